@@ -135,14 +135,19 @@ LimitEvents::LimitEvents(IslandState& island)
   for (std::size_t i = 0; i < tensionScales_.size(); ++i) tensionScales_[i] = usualTension(i);
 }
 
-/// N: of the lighter body at the limit's ends.
-double LimitEvents::usualTension(std::size_t limit) const {
+/// kg: of the bodies at the limit's ends.
+double LimitEvents::lighterMass(std::size_t limit) const {
   double mass = INFINITY;
   const auto [a, b] = bodiesOf(assembly_.limits[limit]);
   for (const int body : {a, b})
     if (body != kFixed && !assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven())
       mass = std::min(mass, assembly_.mechanism.bodies[static_cast<std::size_t>(body)].mass);
-  return kUsualAcceleration * mass;
+  return mass;
+}
+
+/// N
+double LimitEvents::usualTension(std::size_t limit) const {
+  return kUsualAcceleration * lighterMass(limit);
 }
 
 std::optional<LimitChange> LimitEvents::firstChange(const Step& step) {
@@ -285,7 +290,9 @@ std::vector<LimitEvents::Stretch> LimitEvents::findStretches(double time, const 
     if (!std::exchange(isEvaluated, true)) equations_.evaluate(time, state, derivative_);
     const double acceleration = lengtheningAcceleration(limit, state, derivative_),
                  pulling = std::max(0.0, acceleration);
-    const bool isLoaded = !isReleased[i] && acceleration > kMinPull * accelerationScale(limit, state);
+    const double releasing = kTautRatio * tensionScales_[i] / lighterMass(i);  // m/s^2: at less it is released
+    const bool isLoaded =
+        !isReleased[i] && acceleration > std::max(kMinPull * accelerationScale(limit, state), releasing);
     if (!isLoaded && motion.lengthening <= kRestSpeedFloor) continue;
     const double restSpeed =
         2 * pulling * timeStep_ + kLowestRebound * std::sqrt(pulling * sizeOf(limit)) + kRestSpeedFloor;

@@ -67,6 +67,7 @@ class LimitEvents {
  private:
   bool isTaut(std::size_t limit) const { return tautRow_[limit] >= 0; }
   bool rests(std::size_t limit) const;
+  double lighterMass(std::size_t limit) const;
   double usualTension(std::size_t limit) const;
   double tension(std::size_t limit, double time, const VectorX& state);
   std::optional<double> firstTensionLoss(const Step& step, std::size_t limit);

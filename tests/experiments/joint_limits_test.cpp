@@ -223,5 +223,38 @@ TEST(JointLimits, StopThatNothingLoadsIsNoEvent) {
   }
 }
 
+/// A body of 1 kg at a stop without restitution that a force across gravity presses, however weakly, stays there.
+TEST(JointLimits, WeakForceHoldsABodyAtItsStop) {
+  for (const double force : {5e-6, 5e-9}) {
+    const Trajectory moved = runStopped(
+        2000, 1e-6, R"({"name": "box", "mass": 1, "shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "collision": "none"})",
+        fmt::format(R"("sliders": [{{"bodyA": "box", "anchorB": [0, 0, 0], "axis": [1, 0, 0],
+          "limits": {{"upper": 0}}, "motor": {{"force": {}}}}}],)",
+                    force));
+    EXPECT_NEAR(moved.frames.back().joints[0].coordinate, 0, 1e-9) << force;
+    EXPECT_LE(moved.events.size(), 1U);
+  }
+}
+
+/// Without gravity, a slider on a driven rail that swings lies at its stop as long as the rail pushes it, and leaves it
+/// once, at the rail's greatest speed v = A w, to go on with that.
+TEST(JointLimits, StopOfASwingingRailLetsGoAtItsGreatestSpeed) {
+  const double amplitude = 0.1, rate = 2 * kPi;
+  for (const double accuracy : {1e-3, 1e-6, 1e-9}) {
+    const Trajectory moved = runStopped(1.2, accuracy, R"({"name": "rail", "motion": "driven", "collision": "none",
+        "shape": {"sphere": {"radius": 0.1}}, "oscillation": {"direction": [1, 0, 0], "amplitude": 0.1, "frequency": 1,
+        "phase": -1.5707963267948966}},
+        {"name": "box", "mass": 1, "shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "position": [-0.1, 0, 0], "collision": "none"})",
+                                        R"("gravity": [0, 0, 0], "sliders": [{"bodyA": "box", "bodyB": "rail",
+          "anchorB": [0, 0, 0], "axis": [1, 0, 0], "limits": {"lower": 0}}],)");
+    for (const Frame& frame : moved.frames) {
+      const double t = frame.time, turn = 0.25;
+      const double x = t < turn ? -amplitude * std::cos(rate * t) : amplitude * rate * (t - turn);
+      EXPECT_NEAR(frame.states[1].position.x(), x, 10 * accuracy) << t;
+    }
+    EXPECT_LE(moved.events.size(), 2U) << accuracy;
+  }
+}
+
 }  // namespace
 }  // namespace cradle
