@@ -30,8 +30,8 @@ VectorX freeMinimum(const MatrixX& A, const VectorX& b, const VectorX& x, const 
   return found;
 }
 
-/// Where to go from `x`: to `stationary`, unless x^T A x / 2 - b^T x is greatest there, on the line between them. Then it
-/// falls without end on the other side of `x`, as far as limits let it.
+/// Where to go from `x`: to `stationary`, unless x^T A x / 2 - b^T x is greatest there, on the line between them. Then
+/// it falls without end on the other side of `x`, as far as limits let it.
 VectorX aimFrom(const MatrixX& A, const VectorX& x, const VectorX& stationary, const VectorX& limits) {
   const VectorX way = stationary - x;
   const VectorX size = way.cwiseAbs();

@@ -136,6 +136,11 @@ double KeyFramePath::nextKey(double time) const {
   return repeats_ ? knots_[1].time + passed + period() : std::numeric_limits<double>::infinity();
 }
 
+double KeyFramePath::lengthAt(double time) const {
+  const bool isBeside = !repeats_ && (time < knots_.front().time || time >= knots_.back().time);
+  return isBeside ? std::numeric_limits<double>::infinity() : lengthOf(placeOf(time).piece);
+}
+
 bool KeyFramePath::isStill(double time) const {
   if (!repeats_ && (time < knots_.front().time || time >= knots_.back().time)) return true;
   const std::size_t piece = placeOf(time).piece;

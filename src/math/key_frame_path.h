@@ -33,6 +33,9 @@ class KeyFramePath {
   /// The first key frame after `time` (s), where the third derivative jumps; infinite if there is none.
   double nextKey(double time) const;
 
+  /// s: from the key frame before `time` to the next one; infinite before the first and after the last.
+  double lengthAt(double time) const;
+
   /// Whether the pose stays as it is from `time` to the next key frame.
   bool isStill(double time) const;
 

@@ -51,6 +51,15 @@ double nextJump(const PrescribedMotion& motion, double time) {
   return path ? path->nextKey(time) : std::numeric_limits<double>::infinity();
 }
 
+double timeScale(const PrescribedMotion& motion, double time) {
+  if (isStill(motion, time)) return INFINITY;
+  return std::visit(
+      Overloaded{[](const SteadyMotion& steady) { return 2 * std::numbers::pi / steady.angularVelocity.norm(); },
+                 [](const OscillatingMotion& oscillation) { return 1 / std::abs(oscillation.frequency); },
+                 [&](const KeyFramePath& path) { return path.lengthAt(time); }},
+      motion);
+}
+
 bool isStill(const PrescribedMotion& motion, double time) {
   return std::visit(
       Overloaded{

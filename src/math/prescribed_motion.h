@@ -30,6 +30,10 @@ PoseMotion motionAt(const PrescribedMotion& motion, double time);
 /// The first instant (s) after `time` at which a derivative jumps; infinite if there is none.
 double nextJump(const PrescribedMotion& motion, double time);
 
+/// s: in which the motion at `time` comes to its like: a period, a turn, or the way to the next key frame; infinite for
+/// a straight way at constant speed, and while it waits.
+double timeScale(const PrescribedMotion& motion, double time);
+
 /// Whether the pose stays as it is from `time` to the next jump.
 bool isStill(const PrescribedMotion& motion, double time);
 

@@ -10,6 +10,7 @@
 #include "dynamics/integrators/pose_interpolant.h"
 #include "impact/impact_energy.h"
 #include "impact/rope_impulse.h"
+#include "math/parabola.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -20,7 +21,8 @@ constexpr double kSlackRatio = 1e-6;      // of its size: a limit this far away 
 constexpr double kLowestRebound = 1e-6;   // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
 constexpr double kUsualAcceleration = 1;  // m/s^2: tensions are compared with what gives that before others are known
 constexpr double kMinPull = 1e-11;  // of the accelerations that it is the difference of: a pull that is no rounding
-constexpr int kTensionSamples = 4;  // a step: it is at most a small part of a swing
+constexpr double kShallowTension = 0.01;        // of the samples beside it: a parabola that is as low may miss a loss
+constexpr int kTensionSamples = 4;              // a step: it is at most a small part of a swing
 constexpr double kMinFirstSample = 1e-9;        // of a step: a rebound that is over sooner is none
 constexpr double kMaxFirstSample = 1.0 / 1024;  // of a step
 constexpr double kCoarsestInterval = 1.0 / 8;   // of a step, of a limit without tension: its slack is smooth
@@ -192,15 +194,26 @@ std::optional<LimitChange> LimitEvents::firstReach(const Step& step, std::size_t
   return fraction ? std::optional(LimitChange{*fraction, index, threshold}) : std::nullopt;
 }
 
-/// First fraction of the step at which the tension of a taut limit falls below zero, between a few samples of it.
+/// First fraction of the step at which the tension of a taut limit falls below zero, by a few samples of it and the
+/// parabolas through them.
 std::optional<double> LimitEvents::firstTensionLoss(const Step& step, std::size_t limit) {
-  double before = tension(limit, step.time, step.startState);
-  for (int i = 1; i <= kTensionSamples; ++i) {
-    const double fraction = static_cast<double>(i) / kTensionSamples;
+  const auto at = [&](double fraction) {
     interpolate(step, fraction, sample_);
-    const double after = tension(limit, step.time + fraction * step.timeStep, sample_);
-    if (before > 0 && after < 0) return fraction - after / (after - before) / kTensionSamples;
-    before = after;
+    return Sample{fraction, tension(limit, step.time + fraction * step.timeStep, sample_)};
+  };
+  const auto lossBetween = [](const Sample& before, const Sample& after) {
+    return after.at - after.value * (after.at - before.at) / (after.value - before.value);
+  };
+  std::array<Sample, 3> samples{{{}, {}, {0, tension(limit, step.time, step.startState)}}};
+  for (int i = 1; i <= kTensionSamples; ++i) {
+    samples = {samples[1], samples[2], at(static_cast<double>(i) / kTensionSamples)};
+    if (samples[1].value > 0 && samples[2].value < 0) return lossBetween(samples[1], samples[2]);
+    // It may be lost for less than the way from one sample to the next.
+    const bool areAbove = i > 1 && samples[0].value > 0 && samples[1].value > 0 && samples[2].value > 0;
+    const std::optional<Sample> least = areAbove ? leastOf(samples) : std::nullopt;
+    if (!least || least->value > kShallowTension * std::max(samples[0].value, samples[2].value)) continue;
+    const Sample found = at(least->at);
+    if (found.value < 0) return lossBetween(samples[found.at < samples[1].at ? 0 : 1], found);
   }
   return std::nullopt;
 }

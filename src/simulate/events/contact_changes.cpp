@@ -10,6 +10,7 @@
 
 #include "collision/mesh_surface.h"
 #include "constraints/contact_groups.h"
+#include "math/parabola.h"
 #include "simulate/events/contacts_on_meshes.h"
 #include "simulate/events/cylinder_rims.h"
 #include "simulate/events/sliding_friction.h"
@@ -19,10 +20,10 @@ namespace {
 
 using Kind = ContactChange::Kind;
 
-constexpr int kEventSamples = 4;     // of a step of order 8
-constexpr int kFewEventSamples = 2;  // of one of order 5, which is half as long
-constexpr int kMaxBorderCuts = 60;  // halves of a step: none is left, to rounding
-constexpr int kMaxSecants = 20;     // of infeasibility; six are usual
+constexpr int kEventSamples = 4;      // of a step of order 8
+constexpr int kFewEventSamples = 2;   // of one of order 5, which is half as long
+constexpr int kMaxBorderCuts = 60;    // halves of a step: none is left, to rounding
+constexpr int kMaxSecants = 20;       // of infeasibility; six are usual
 constexpr double kBehindKink = -0.9;  // a larger infeasibility is behind its kink, whatever rounding does
 
 // The event function of leaving is kLeavingUnit (1 - d / leaving), d the distance from the nearest point, and not below
@@ -33,6 +34,12 @@ constexpr double kLeavingUnit = 1e3 * EventTolerances::kEventFunction;
 constexpr double kJustFlat = 1 - 1e-6;  // a disc that lies down ends a little flatter than a row may follow
 
 constexpr std::array<Kind, 5> kKinds = {Kind::release, Kind::slip, Kind::stick, Kind::leave, Kind::redundant};
+constexpr std::size_t kOfPair = kKinds.size();  // of the event functions: what is left of the friction of a whole pair
+
+// Event functions whose parabola through three samples falls below this may fall below zero between them: it misses
+// the least of a cosine by some 1e-4 where samples are 1/32 of a period apart.
+constexpr double kShallow = 0.01;
+constexpr int kMaxDipTrials = 3;  // at the least of the parabola, and of those with it
 
 }  // namespace
 
@@ -119,6 +126,18 @@ double ContactChanges::slidingNormalForce(std::size_t contact, const std::vector
   return sum;
 }
 
+/// Of the friction that holds the pair of a contact, as evaluated last, what is left, over the force.
+double ContactChanges::stickingLeft(std::size_t contact, const std::vector<ContactRecord>& records) const {
+  double limit = 0;
+  Vec3 tangential = Vec3::Zero();
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (records[i].contact.pair != records[contact].contact.pair) continue;
+    const ContactForce& force = island_.equations.contactForces()[i];
+    limit += records[i].pair.material.staticFriction * force.normal, tangential += force.tangential;
+  }
+  return limit > 0 ? (limit - tangential.norm()) / limit : INFINITY;
+}
+
 void ContactChanges::evaluate(const std::vector<ContactRecord>& records, double fraction, const VectorX& state,
                               std::vector<EventFunctions>& values) {
   island_.equations.evaluate(timeAt(fraction), state, derivative_);
@@ -135,10 +154,11 @@ void ContactChanges::takeEvaluated(const std::vector<ContactRecord>& records, co
   for (std::size_t i = 0; i < records.size(); ++i) {
     const ContactMotion motion = mechanism().contacts[i].motion;
     const double limit = records[i].pair.material.staticFriction * forces[i].normal;
-    values[i] = {forces[i].normal / records[i].force, INFINITY, INFINITY, INFINITY, INFINITY};
+    values[i] = {forces[i].normal / records[i].force, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
     if (!sphereOverMesh(island_.assembly.geometry, records[i].pair, state).mesh)
       values[i][3] = kLeavingUnit * std::max(-1.0, 1 - distanceFromNearest(i, records[i], state) / tolerances_.leaving);
     if (motion == ContactMotion::sticking) values[i][1] = (limit - forces[i].tangential.norm()) / records[i].force;
+    if (motion == ContactMotion::sticking && records[i].isRedundant) values[i][kOfPair] = stickingLeft(i, records);
     if (motion == ContactMotion::sliding) values[i][2] = forces[i].tangentialVelocity.dot(slidingDirectionAt(i, state));
     if (motion == ContactMotion::sliding && records[i].isRedundant)
       values[i][4] = slidingNormalForce(i, records) / records[i].force;
@@ -175,13 +195,46 @@ std::optional<ContactChange> ContactChanges::first(const std::vector<ContactReco
       interpolate(step, to, sample_);
       evaluate(records, to, sample_, ahead_);
     }
-    const std::optional<ContactChange> found = firstBetween(records, from, to);
+    std::optional<ContactChange> found = firstBetween(records, from, to);
+    if (!found && k > 1) found = firstInDip(records, from - 1.0 / samples, from, to);
     if (leaving && leaving->fraction <= (found ? found->fraction : to))
       return ContactChange{Kind::leave, leaving->fraction, leaving->record};
     if (found) return found;
-    std::swap(before_, ahead_);
+    std::swap(earlier_, before_), std::swap(before_, ahead_);
   }
   knownTime_ = step.time + step.timeStep;
+  return std::nullopt;
+}
+
+/// A change in a dip of a force or of what is left of friction, which is above zero at three points of the step, with
+/// the event functions earlier_, before_ and ahead_, but not between them. Those of the points stay as they are if
+/// there is none.
+std::optional<ContactChange> ContactChanges::firstInDip(const std::vector<ContactRecord>& records, double earlier,
+                                                        double from, double to) {
+  const std::vector<EventFunctions> atFrom = before_, atTo = ahead_;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    for (const std::size_t kind : {std::size_t(0), std::size_t(1), kOfPair}) {
+      std::array<Sample, 3> samples{{{earlier, earlier_[i][kind]}, {from, atFrom[i][kind]}, {to, atTo[i][kind]}}};
+      const auto isAbove = [](const Sample& sample) { return sample.value > 0 && std::isfinite(sample.value); };
+      if (!std::all_of(samples.begin(), samples.end(), isAbove)) continue;
+      for (int trial = 0; trial < kMaxDipTrials; ++trial) {
+        const std::optional<Sample> least = leastOf(samples);
+        if (!least || least->value > kShallow) break;
+        interpolate(island_.step, least->at, sample_);
+        evaluate(records, least->at, sample_, ahead_);
+        const double found = ahead_[i][kind];
+        if (found < -EventTolerances::kEventFunction) {
+          const bool isEarly = least->at < from;
+          if (isEarly) before_ = earlier_;
+          if (const auto change = firstBetween(records, isEarly ? earlier : from, least->at)) return change;
+          break;
+        }
+        auto& [a, b, c] = samples;
+        if (found >= b.value) break;
+        (least->at < b.at ? c : a) = b, b = {least->at, found};
+      }
+      before_ = atFrom, ahead_ = atTo;
+    }
   return std::nullopt;
 }
 

@@ -60,7 +60,9 @@ class ContactChanges {
 
  private:
   /// Of a contact, in the order of the kinds.
-  using EventFunctions = std::array<double, 5>;
+  /// Behind them what is left of the friction of its whole pair, for contacts that stick and are redundant: of these,
+  /// single forces tell nothing.
+  using EventFunctions = std::array<double, 6>;
 
   Mechanism& mechanism() const { return island_.assembly.mechanism; }
   Vec3 slidingDirectionAt(std::size_t contact, const VectorX& state) const;
@@ -74,6 +76,9 @@ class ContactChanges {
                 std::vector<EventFunctions>& values);
   void takeEvaluated(const std::vector<ContactRecord>& records, const VectorX& state,
                      std::vector<EventFunctions>& values);
+  double stickingLeft(std::size_t contact, const std::vector<ContactRecord>& records) const;
+  std::optional<ContactChange> firstInDip(const std::vector<ContactRecord>& records, double earlier, double from,
+                                          double to);
   std::optional<ContactChange> firstBetween(const std::vector<ContactRecord>& records, double from, double to);
   struct GroupRows {
     std::vector<const ContactRecord*> records;
@@ -95,7 +100,7 @@ class ContactChanges {
   std::vector<BodyFrame> frames_;
   VectorX derivative_, sample_;
   std::vector<char> isInDoubt_;  // of each contact: its row's force, of minimum norm, does not prove that it lasts
-  std::vector<EventFunctions> before_, ahead_, after_, atEnd_;
+  std::vector<EventFunctions> earlier_, before_, ahead_, after_, atEnd_;
   double knownTime_ = NAN;  // s: of the values in before_, if a step without changes has ended there
 };
 

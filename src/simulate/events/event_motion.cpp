@@ -22,6 +22,7 @@ constexpr double kMinLookahead = 1.0 / 64;  // of the step that the accuracy all
 constexpr double kTurnsOfAStep = 3;         // a step is stable over so many times in which friction turns a sliding
 constexpr int kMaxShortSteps = 1000;        // in a row; after an event some are short
 constexpr int kMaxRopeRounds = 100;         // of ropes and contacts at one instant; the others come after the next step
+constexpr double kMaxPart = 1.0 / 8;        // of what a driven body takes to come to its like
 constexpr int kMaxDoubts = 20;              // steps for one event that the interpolant has and the step may not
 constexpr int kMaxMotorRounds = 3;  // of motors and contacts; those that change each other go on in the next step
 
@@ -189,10 +190,16 @@ bool EventMotion::isStillAccurate() {
   return false;
 }
 
-/// s. Where impacts are frequent, steps are not planned far beyond the next one.
+/// s. Where impacts are frequent, steps are not planned far beyond the next one. What driven bodies hold has no error,
+/// however long a step is: changes of its contacts, ropes and stops are looked for several times in a period of these.
 double EventMotion::longestStep() const {
-  return std::max(kMaxLengthGrowth * *std::max_element(lengths_.begin(), lengths_.end()),
-                  kMinLookahead * stepSize_.timeStep);
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  double longest = std::max(kMaxLengthGrowth * *std::max_element(lengths_.begin(), lengths_.end()),
+                            kMinLookahead * stepSize_.timeStep);
+  if (!mechanism.contacts.empty() || ropes_.hasLimits())
+    for (const DrivenBody& driven : mechanism.driven)
+      longest = std::min(longest, kMaxPart * timeScale(driven.motion, island_.time));
+  return longest;
 }
 
 /// Whether the step may end on its interpolant, which is as accurate as the step: that of DOPRI5.
