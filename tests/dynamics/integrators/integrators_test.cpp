@@ -113,18 +113,5 @@ TEST(Rk4, IsExactForPolynomialsOfDegreeFour) {
   EXPECT_NEAR(end[0], 5 * 16 / 4.0 - 8 + 2, 1e-14 * 20);
 }
 
-TEST(Interpolant, IsExactForCubicsAndAtBothEnds) {
-  const auto cubic = [](double t) { return 1 + 2 * t - 3 * t * t + 4 * t * t * t; };
-  const RightHandSide rate{[](double t, const VectorX&, VectorX& r) { r[0] = 2 - 6 * t + 12 * t * t; }, nullptr, 0};
-  Step step;
-  rk4(rate, VectorX::Constant(1, cubic(0.5)), 0.5, 2, step);
-  prepareInterpolant(rate, step);
-  VectorX state;
-  for (const double fraction : {0.0, 0.1, 0.37, 0.5, 0.9, 1.0}) {
-    interpolate(step, fraction, state);
-    EXPECT_NEAR(state[0], cubic(0.5 + 2 * fraction), 1e-13 * cubic(2.5)) << fraction;
-  }
-}
-
 }  // namespace
 }  // namespace cradle
