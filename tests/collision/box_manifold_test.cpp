@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -57,6 +58,48 @@ TEST(BoxesInContact, LieOnSidesNotOnCrossingEdgesWhenNearlyLevel) {
         const PredictedManifold patch = contactOfBoxes(below, above, Vec3(0, 0.197 - height, 0), 0.005);
         EXPECT_EQ(patch.count, 4u) << height << " " << yaw << " " << about;
       }
+}
+
+// Two cubes on an edge each, crossed, with half sides h and their centres H and z apart: along y, across both edges,
+// they are apart by H - 2 sqrt(2) h, and along the lower one's side n = (0, 1, 1) / sqrt(2) by (H + z) / sqrt(2) - h -
+// (1 + 1 / sqrt(2)) h. Edges carry where they are farther apart by more than 5e-4 m.
+TEST(BoxesInContact, PreferSidesToEdgesThatAreHardlyFartherApart) {
+  const double half = 0.1, root = std::sqrt(2.0), high = 2 * root * half - 0.002;
+  const PosedBox below{Vec3::Zero(), turnedAbout(Vec3::UnitX(), std::atan(1.0)), Vec3::Constant(half)};
+  for (const double part : {0.99, 1.01}) {
+    const double onSide = -0.002 - part * 5e-4, beside = (onSide + (2 + 1 / root) * half) * root - high;
+    ASSERT_LT(beside, half);  // the edges cross
+    const PosedBox above{Vec3(0, high, beside), turnedAbout(Vec3::UnitZ(), std::atan(1.0)), Vec3::Constant(half)};
+    const PredictedManifold patch = contactOfBoxes(below, above, Vec3::Zero(), 0.005);
+    EXPECT_LT((patch.normal - (part < 1 ? Vec3(0, 1, 1) / root : Vec3(0, 1, 0))).norm(), 1e-12);
+    if (part > 1) {
+      EXPECT_NEAR(patch.points[0].separation, -0.002, 1e-12);
+    }
+  }
+}
+
+// The lower cube is tilted by an angle about x, the upper one stands on an edge along z, so that the normal of both
+// edges is y. Where that is as near to the lower side's, within a cosine of 0.95, the side carries; where boxes slide,
+// by more than 2e-3 m in a step, within 0.98.
+TEST(BoxesInContact, CoverEdgesByASideThatFacesAsTheyDo) {
+  const double half = 0.1;
+  const auto normalAt = [&](double angle, double sliding) {
+    const double edge = half * (std::cos(angle) + std::sin(angle));
+    const PosedBox below{Vec3::Zero(), turnedAbout(Vec3::UnitX(), angle), Vec3::Constant(half)};
+    const PosedBox above{Vec3(0, edge + std::sqrt(2.0) * half - 5e-4, -0.1), turnedAbout(Vec3::UnitZ(), std::atan(1.0)),
+                         Vec3::Constant(half)};
+    return contactOfBoxes(below, above, Vec3(sliding, 0, 0), 0.005).normal;
+  };
+  const auto isBySide = [&](double angle, double sliding) {
+    const Vec3 normal = normalAt(angle, sliding), side(0, std::cos(angle), std::sin(angle));
+    EXPECT_LT(std::min((normal - side).norm(), (normal - Vec3::UnitY()).norm()), 1e-12);
+    return (normal - side).norm() < 1e-12;
+  };
+  for (const double part : {0.99, 1.01}) {
+    EXPECT_EQ(isBySide(part * std::acos(0.95), 0), part < 1);
+    EXPECT_EQ(isBySide(part * std::acos(0.98), 0.003), part < 1);
+    EXPECT_EQ(isBySide(0.26, part * 2e-3), part < 1);  // between both angles
+  }
 }
 
 /// Separation (m, < 0: overlap) along the axis that tells most, of all 15. (S. Gottschalk, M. C. Lin, D. Manocha,
