@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "constraints/invariants.h"
+#include "dynamics/integrators/dop853.h"
 #include "dynamics/integrators/rk4.h"
 #include "simulate/one_island.h"
 
@@ -95,6 +96,26 @@ TEST(MotorEvents, FindWhereHoldingTakesAllOfTheForce) {
     centerOfMass(state, 0).x() = 0.3;
     EXPECT_NEAR(motors.margin(*change, state), (20 - 50 * 0.3) / 20, 1e-13);
   }
+}
+
+// All of a force F against a spring gives a velocity of V sin(w t), V = F w / k: it passes a target of 0.9 V and is
+// below it again at the end of a step from w t = 1 to 2.1. The instant is that of a chord over the first quarter of the
+// step; the interpolant of degree 7 has an error of (w h)^8 / 8! of V at most, 5e-5.
+TEST(MotorEvents, FindTargetsThatAreAtTheEndOutOfReachAgain) {
+  const double rate = 5, place = 20.0 / 50, most = place * rate;  // w of 50 N/m and 2 kg; F / k
+  OneIsland at(fmt::format(R"("duration": 9, "gravity": [0, 0, 0], "bodies": [{}],
+    "sliders": [{{"bodyA": "box", "anchorB": [0, 0, 0], "axis": [1, 0, 0],
+      "motor": {{"targetVelocity": {}, "maxForce": 20}}}}],
+    "springs": [{{"bodyA": "box", "anchorB": [-1, 0, 0], "stiffness": 50, "restLength": 1}}])",
+                           wheel("box", 0), 0.9 * most));
+  centerOfMass(at.state(), 0).x() = place * (1 - std::cos(1)), linearVelocity(at.state(), 0).x() = most * std::sin(1);
+  dop853(at.island.rightHandSide, at.state(), 0, 1.1 / rate, at.island.step);
+  prepareInterpolant(at.island.rightHandSide, at.island.step);
+  MotorEvents motors(at.island);
+  const auto change = motors.firstChange(at.island.step);
+  ASSERT_TRUE(change);
+  const double start = std::sin(1), quarter = std::sin(1 + 1.1 / 4);
+  EXPECT_NEAR(change->fraction, (0.9 - start) / (quarter - start) / 4, 5e-5 / (quarter - start) / 4);
 }
 
 // Off its target a motor pushes towards it, as often as it is asked; at it, it holds.

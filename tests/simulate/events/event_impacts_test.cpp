@@ -16,11 +16,12 @@ constexpr double kImpactRounding = 1e-14;  // m/s, N s, J: of speeds of some m/s
 
 /// Balls of 0.1 m, of one material with the plane y = 0, and the impacts of an event.
 struct Impacts : OneIsland {
-  Impacts(double restitution, double friction, const std::string& bodies, double gravity = kGravity)
+  Impacts(double restitution, double friction, const std::string& bodies, double gravity = kGravity,
+          const std::string& more = "")
       : OneIsland(fmt::format(R"("duration": 1, "accuracy": 1e-6, "gravity": [0, {}, 0], "materials": {{"stuff":
           {{"restitution": {}, "staticFriction": {}, "dynamicFriction": {}}}}}, "bodies": [
-          {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "stuff"}}, {}])",
-                              -gravity, restitution, friction, friction, bodies)),
+          {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "stuff"}}, {}]{})",
+                              -gravity, restitution, friction, friction, bodies, more)),
         ropes(island),
         tolerances(eventTolerancesOf(eventScalesOf(island))),
         constraints(mechanism().constraints, mechanism().bodies),
@@ -136,6 +137,42 @@ TEST(EventImpacts, LeaveWhatClosesLaterToItsOwnEvent) {
     EXPECT_EQ(linearVelocity(at.state(), 1).y(), speed);
     ASSERT_THAT(at.touching, SizeIs(speed > 0 ? 2 : 1));
     EXPECT_EQ(at.touching[0].movingBody(), 0);
+  }
+}
+
+// Between the floor and a ball of ten times the mass, impacts of e = 0.1 have no end: all speed is lost in a time of
+// some 1e-10 s, and the impulses of all of them bring both balls to a stop.
+TEST(EventImpacts, EndACollapseAtOnce) {
+  const double gap = 1e-10;
+  Impacts at(0.1, 0,
+             fallingBall("light", 1, Vec3(0, 0.1 + gap, 0), Vec3::Zero()) + ", " +
+                 fallingBall("heavy", 10, Vec3(0, 0.3 + gap, 0), Vec3(0, -1, 0)),
+             0);
+  at.resolve();
+  EXPECT_NEAR(linearVelocity(at.state(), 0).y(), 0, kImpactRounding);
+  EXPECT_NEAR(linearVelocity(at.state(), 1).y(), 0, kImpactRounding);
+  EXPECT_NEAR(impactEnergy(at.state()), 10 / 2.0, 10 * kImpactRounding);
+  const std::vector<Event> events = at.island.log.take();
+  ASSERT_THAT(events, SizeIs(2));
+  for (const Event& event : events) EXPECT_NEAR(event.impulse, 10, 100 * kImpactRounding);
+}
+
+// A ball is tied to the floor by a rope at its length, and an equal one drives it from below: it takes the speed on,
+// the rope turns it back, and it gives the speed back. Both impulses are 2 m v in all.
+TEST(EventImpacts, HaveTautRopesAsMembers) {
+  const double mass = 1.5, speed = 3;
+  Impacts at(1, 0,
+             fallingBall("tied", mass, Vec3(0, 1, 0), Vec3::Zero()) + ", " +
+                 fallingBall("striker", mass, Vec3(0, 0.8, 0), Vec3(0, speed, 0)),
+             kGravity, R"(, "ropes": [{"bodyA": "tied", "anchorB": [0, 0, 0], "maxLength": 1, "restitution": 1}])");
+  at.resolve();
+  EXPECT_NEAR(linearVelocity(at.state(), 0).y(), 0, kImpactRounding);
+  EXPECT_NEAR(linearVelocity(at.state(), 1).y(), -speed, kImpactRounding);
+  const std::vector<Event> events = at.island.log.take();
+  ASSERT_THAT(events, SizeIs(2));
+  for (const Event& event : events) {
+    EXPECT_NEAR(event.impulse, 2 * mass * speed, 10 * kImpactRounding);
+    EXPECT_EQ(event.kind == EventKind::taut, std::min(event.bodyA, event.bodyB) < 1);  // of the world
   }
 }
 
