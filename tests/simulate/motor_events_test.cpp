@@ -180,17 +180,33 @@ TEST(MotorEvents, HoldLoadsUpToTheirForce) {
   EXPECT_EQ(modeOf(1 + 1.1e-6, Mode::pushes, std::nullopt), Mode::holds);
 }
 
-TEST(MotorEvents, AreNoneOfConstantForcesAndOfMotorsWithoutForce) {
+TEST(MotorEvents, AreNoneOfConstantForcesAndOfMotorsWithoutAny) {
   OneIsland constant = turned(R"("torque": -0.6)");
   MotorEvents ofConstant(constant.island);
   EXPECT_FALSE(ofConstant.any());
   EXPECT_FALSE(ofConstant.resolve(std::nullopt));
   EXPECT_EQ(constant.mechanism().motors[0].sign, -1);
-  OneIsland idle = turned(targetOf(2, 0));
-  angularVelocity(idle.state(), 0).z() = 3;
+  // It falls past the velocity that a motor without force would have it keep.
+  OneIsland idle(fmt::format(R"("duration": 9, "bodies": [{}], "sliders": [{{"bodyA": "box", "anchorB": [0, 0, 0],
+    "axis": [0, -1, 0], "motor": {{"targetVelocity": 2, "maxForce": 0}}}}])",
+                             wheel("box", 0)));
   MotorEvents ofIdle(idle.island);
   takeMotorStep(idle.island, 1);
+  EXPECT_LT(linearVelocity(idle.island.step.state, 0).y(), -2);
   EXPECT_FALSE(ofIdle.firstChange(idle.island.step));
+}
+
+TEST(MotorEvents, AreNoneOfBodiesAtRest) {
+  OneIsland at = turned(targetOf(-8));
+  MotorEvents motors(at.island);
+  at.mechanism().motors[0].sign = -1;
+  takeMotorStep(at.island, 0.5);
+  ASSERT_TRUE(motors.firstChange(at.island.step));
+  at.island.equations.setResting(0, true);
+  EXPECT_FALSE(motors.firstChange(at.island.step));
+  angularVelocity(at.state(), 0).z() = -8;
+  EXPECT_FALSE(motors.resolve(std::nullopt));
+  EXPECT_EQ(at.mechanism().motors[0].mode, Mode::pushes);
 }
 
 }  // namespace
