@@ -95,25 +95,5 @@ TEST(DormandPrince5, TakesSixEvaluations) {
   EXPECT_EQ(evaluations, 13);
 }
 
-// Both are polynomials of degree 4 with the same values: the same to rounding.
-TEST(DormandPrince5, WhatIsCutOffAStepLeavesTheRestOfItsCurve) {
-  const double timeStep = 0.8, cut = 0.3;
-  const Step whole = keplerStep(dormandPrince5, 0.4, timeStep);
-  Step part = whole;
-  cutStep(cut, part);
-  EXPECT_DOUBLE_EQ(part.timeStep, cut * timeStep);
-  VectorX state, of;
-  for (const double fraction : {0.0, 0.2, 0.5, 0.9, 1.0}) {
-    interpolate(part, fraction, of);
-    interpolate(whole, fraction * cut, state);
-    EXPECT_LT((of - state).norm(), 1e-15) << fraction;
-  }
-  const double delta = 1e-6;  // of the step: the difference is good to delta^2 and to rounding over delta
-  VectorX before, after;
-  interpolate(whole, cut - delta, before);
-  interpolate(whole, cut + delta, after);
-  EXPECT_LT(((after - before) / (2 * delta * timeStep) - part.endDerivative).norm(), 1e-9);
-}
-
 }  // namespace
 }  // namespace cradle

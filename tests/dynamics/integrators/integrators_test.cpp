@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "dynamics/integrators/dop853.h"
-#include "dynamics/integrators/dormand_prince5.h"
 #include "dynamics/integrators/explicit_euler.h"
 #include "dynamics/integrators/rk4.h"
 #include "dynamics/integrators/semi_implicit_euler.h"
@@ -113,40 +111,6 @@ TEST(Rk4, IsExactForPolynomialsOfDegreeFour) {
                               nullptr, 0};
   const VectorX end = run(rk4, quartic, VectorX::Zero(1), 2, 1);
   EXPECT_NEAR(end[0], 5 * 16 / 4.0 - 8 + 2, 1e-14 * 20);
-}
-
-TEST(Interpolant, IsExactForCubicsAndAtBothEnds) {
-  const auto cubic = [](double t) { return 1 + 2 * t - 3 * t * t + 4 * t * t * t; };
-  const RightHandSide rate{[](double t, const VectorX&, VectorX& r) { r[0] = 2 - 6 * t + 12 * t * t; }, nullptr, 0};
-  Step step;
-  rk4(rate, VectorX::Constant(1, cubic(0.5)), 0.5, 2, step);
-  prepareInterpolant(rate, step);
-  VectorX state;
-  for (const double fraction : {0.0, 0.1, 0.37, 0.5, 0.9, 1.0}) {
-    interpolate(step, fraction, state);
-    EXPECT_NEAR(state[0], cubic(0.5 + 2 * fraction), 1e-13 * cubic(2.5)) << fraction;
-  }
-}
-
-// Central differences over d = 1e-4 miss a derivative by d^2 / 6 of the third one, some 1e-7 here, and by rounding / d.
-TEST(Interpolant, RateIsTheDerivativeOfItsStates) {
-  const RightHandSide rightHandSide = pulledOscillator(3, kAcceleration);
-  for (const Integrator integrate : {rk4, dormandPrince5, dop853}) {
-    Step step;
-    integrate(rightHandSide, Eigen::Vector2d(1, 2), 0, 0.5, step);
-    prepareInterpolant(rightHandSide, step);
-    VectorX rate, before, after;
-    for (const double fraction : {0.1, 0.37, 0.5, 0.9}) {
-      interpolateRate(step, fraction, rate);
-      interpolate(step, fraction - 1e-4, before);
-      interpolate(step, fraction + 1e-4, after);
-      EXPECT_LT((rate - (after - before) / (2e-4 * step.timeStep)).norm(), 1e-6) << fraction;
-    }
-    interpolateRate(step, 0, rate);
-    EXPECT_LT((rate - step.startDerivative).norm(), 1e-13);
-    interpolateRate(step, 1, rate);
-    EXPECT_LT((rate - step.endDerivative).norm(), 1e-13);
-  }
 }
 
 }  // namespace
