@@ -1,5 +1,6 @@
 // Bodies that are led, against closed forms: what they carry, strike, shake, drag and lift, and what they work.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -512,6 +513,40 @@ TEST(DrivenBodies, BriefExcessOfATableIsSeen) {
           EXPECT_NEAR(timeOf(moved, isLevel ? EventKind::slip : EventKind::release), expected, late + 1e-7 / rate)
               << ratio << " " << frequency << shape << isLevel;
         }
+}
+
+/// A plate that comes down on a ball on the floor, or two walls that close over a ball, leave it no way, whatever
+/// friction and restitution there are. That is said at once, and no ball goes through the floor.
+TEST(DrivenBodies, BallThatIsPressedEndsTheRun) {
+  for (const double friction : {0.0, 0.5, 1.0})
+    for (const double restitution : {0.0, 0.5})
+      for (const double speed : {0.1, 3.0}) {
+        const std::string material =
+            fmt::format(R"("materials": {{"m": {{"restitution": {}, "staticFriction": {}, "dynamicFriction": {}}}}},)",
+                        restitution, friction, friction);
+        const Scene pressed = sceneWith(fmt::format(R"("duration": 12, {} "bodies": [
+            {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+            {{"name": "press", "shape": {{"box": {{"size": [3, 1, 3]}}}}, "motion": "driven", "material": "m",
+              "position": [0, 1.5, 0], "linearVelocity": [0, {}, 0]}},
+            {{"name": "ball", "shape": {{"sphere": {{"radius": 0.5}}}}, "position": [0, 0.5, 0], "material": "m"}}])",
+                                                    material, -speed));
+        const Scene squeezed = sceneWith(fmt::format(R"("duration": 12, "gravity": [0, 0, 0], {0} "bodies": [
+            {{"name": "left", "shape": {{"box": {{"size": [1, 3, 3]}}}}, "motion": "driven", "material": "m",
+              "position": [-1.1, 0, 0], "linearVelocity": [{1}, 0, 0]}},
+            {{"name": "right", "shape": {{"box": {{"size": [1, 3, 3]}}}}, "motion": "driven", "material": "m",
+              "position": [1.1, 0, 0], "linearVelocity": [-{1}, 0, 0]}},
+            {{"name": "ball", "shape": {{"sphere": {{"radius": 0.5}}}}, "material": "m"}}])",
+                                                     material, speed));
+        for (const Scene& scene : {pressed, squeezed}) {
+          try {
+            simulate(scene);
+            ADD_FAILURE() << friction << " " << restitution << " " << speed;
+          } catch (const Error& error) {
+            EXPECT_THAT(error.what(), testing::HasSubstr("what is driven"))
+                << friction << " " << restitution << " " << speed;
+          }
+        }
+      }
 }
 
 }  // namespace

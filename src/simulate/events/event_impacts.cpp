@@ -12,6 +12,9 @@
 namespace cradle {
 namespace {
 
+// Of the fastest contact before an impact: a solved one leaves no contact that closes as fast. Rounding leaves 1e-12.
+constexpr double kNoRoom = 1e-3;
+
 /// m/s: of the faster of the two bodies' centres.
 double contactSpeed(const Contact& contact, const VectorX& state) {
   double speed = 0;
@@ -174,7 +177,9 @@ double EventImpacts::resolveIsland(const DisjointSets& islands, int island, cons
   }
   for (const ImpactContact& rope : ropes)
     if (isIn(rope.contact)) impacts.push_back(rope);
+  const VectorX approach = island_.state;
   const double zenoTime = resolveImpact(impacts);
+  requireRoom(approach, {impacts.begin(), impacts.begin() + std::ssize(contacts)});
   for (std::size_t i = 0; i < contacts.size(); ++i)
     addImpulse(contacts[i], impacts[i].contact.normal.dot(impacts[i].impulse), impulses);
   std::size_t next = contacts.size();
@@ -209,6 +214,18 @@ double EventImpacts::resolveImpact(std::vector<ImpactContact>& impacts) {
   bookImpact(impacts, island_.assembly.mechanism.bodies, constraints_, approach, state);
   bookNumerical(energyConstant(island_.assembly.mechanism, approach), island_.assembly.mechanism, state);
   return zenoTime;
+}
+
+/// `impacts` are those of contacts alone. Driven bodies that come together over what they touch leave it no velocity
+/// with which all contacts open. Throws Error(unstable) then.
+void EventImpacts::requireRoom(const VectorX& approach, const std::vector<ImpactContact>& impacts) const {
+  if (island_.assembly.mechanism.driven.empty()) return;
+  double fastest = 0;
+  for (const ImpactContact& impact : impacts) fastest = std::max(fastest, contactSpeed(impact.contact, approach));
+  for (const ImpactContact& impact : impacts)
+    if (openingSpeed(impact.contact, island_.state) < -kNoRoom * fastest &&
+        impact.contact.separation < tolerances_.touch)
+      island_.failAtNoRoom(impact.contact);
 }
 
 /// Gives contacts whose rebound is too low to be seen no rebound: their bounces accumulate at the Zeno time 2 v / (a (1

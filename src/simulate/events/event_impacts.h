@@ -53,6 +53,7 @@ class EventImpacts {
   double resolveIsland(const DisjointSets& islands, int island, const ImpactSequence& sequence,
                        std::vector<ImpactContact>& ropes, std::vector<ContactImpulse>& impulses);
   double resolveImpact(std::vector<ImpactContact>& impacts);
+  void requireRoom(const VectorX& approach, const std::vector<ImpactContact>& impacts) const;
   double endZenoSequence(const VectorX& approach, std::vector<ImpactContact>& impacts);
 
   IslandState& island_;
