@@ -180,8 +180,9 @@ VectorX EquationsOfMotion::possibleForces(const std::vector<std::size_t>& holdin
   VectorX forces = VectorX::Zero(limits.size());
   std::vector<Eigen::Index> atTarget;
   for (Eigen::Index k = 0; k < limits.size(); ++k) {
-    const bool isReached = static_cast<int>(holding[static_cast<std::size_t>(k)]) == reached_;
-    const JointMotor& motor = mechanism_.motors[holding[static_cast<std::size_t>(k)]];
+    const std::size_t index = holding[static_cast<std::size_t>(k)];
+    const bool isReached = !reached_.empty() && reached_[index];
+    const JointMotor& motor = mechanism_.motors[index];
     if (!isReached && std::abs(missing[k]) > settledSpeed(motor, response.perForce(k, k)))
       forces[k] = std::copysign(limits[k], missing[k]);
     else
@@ -194,7 +195,7 @@ VectorX EquationsOfMotion::possibleForces(const std::vector<std::size_t>& holdin
   return forces;
 }
 
-VectorX EquationsOfMotion::possibleMotorForces(double time, const VectorX& state, int reached) {
+VectorX EquationsOfMotion::possibleMotorForces(double time, const VectorX& state, const std::vector<char>& reached) {
   asksPossible_ = true, reached_ = reached;
   VectorX derivative;
   evaluate(time, state, derivative);

@@ -59,9 +59,9 @@ class EquationsOfMotion {
   /// The forces (N or N m) that motors with a target velocity can have at `time` (s), in their order, whatever their
   /// mode: those whose joints are off the target push with all they have; the others, all together, give what keeps
   /// their joints at it, or all they have where that does not suffice. Off is what misses it by more than settledSpeed,
-  /// of all motors but `reached` (-1: none). Motors of bodies at rest, and constant ones, have the forces that they
-  /// have.
-  VectorX possibleMotorForces(double time, const VectorX& state, int reached);
+  /// of all motors but those that have `reached` their targets (a flag for each; empty: none). Motors of bodies at
+  /// rest, and constant ones, have the forces that they have.
+  VectorX possibleMotorForces(double time, const VectorX& state, const std::vector<char>& reached);
 
   /// How fast (1/s) motors that hold take back what their joint's velocity is off. Steps of a fixed length do so within
   /// one, and with at most the force that motors have; others locate the instants from which that does not suffice.
@@ -124,7 +124,7 @@ class EquationsOfMotion {
   bool isWithoutContacts_ = false;  // in the evaluation under way
   double motorTimeStep_ = 0;        // s; 0: motors hold without a limit
   bool asksPossible_ = false;       // what motors can give, whatever their modes
-  int reached_ = -1;                // a motor that is at its target then
+  std::vector<char> reached_;       // of each motor: it is at its target then
   long evaluations_ = 0;
 };
 

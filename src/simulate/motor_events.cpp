@@ -12,6 +12,8 @@ constexpr int kSamples = 4;  // a step, as of the tensions of ropes
 // Of the largest velocity in a step: so far past its target a motor has come to it. One that leaves it again at once is
 // at it to within rounding, on either side.
 constexpr double kPastTarget = 1e-9;
+constexpr double kTogether =
+    10;  // times what is left of the first: others that miss no more come to their targets with it
 constexpr double kAtItsEnd = 1e-6;  // of all the force: what is as near to it is at its end
 
 }  // namespace
@@ -68,11 +70,26 @@ std::optional<MotorChange> MotorEvents::firstChange(const Step& step) {
   return first;
 }
 
+/// Motors of wheels on one road come to their targets together: all that miss theirs by no more than the search for the
+/// instant of one has left it to miss.
+std::vector<char> MotorEvents::reachedWith(std::size_t first) {
+  const auto missing = [this](std::size_t i) {
+    return std::abs(motors()[i].targetVelocity - velocity(i, island_.state));
+  };
+  std::vector<char> reached(motors().size(), 0);
+  for (std::size_t i = 0; i < motors().size(); ++i) {
+    const double left = std::max(missing(first) / scales_[first], kPastTarget) * scales_[i];
+    reached[i] = i == first || (motors()[i].hasTarget && !rests(i) && missing(i) <= kTogether * left);
+  }
+  return reached;
+}
+
 bool MotorEvents::resolve(const std::optional<MotorChange>& change) {
   if (!any()) return false;
   // Its velocity is at the target, to within what the search for the instant leaves.
   const bool isReached = change && motors()[change->motor].mode == JointMotor::Mode::pushes;
-  const int reached = isReached ? static_cast<int>(change->motor) : -1;
+  std::vector<char> reached;
+  if (isReached) reached = reachedWith(change->motor);
   const VectorX forces = island_.equations.possibleMotorForces(island_.time, island_.state, reached);
   const VectorX& mobilities = island_.equations.motorMobilities();
   bool isOther = false;
@@ -81,7 +98,7 @@ bool MotorEvents::resolve(const std::optional<MotorChange>& change) {
     if (!motor.hasTarget || rests(i)) continue;
     const Eigen::Index at = static_cast<Eigen::Index>(i);
     const double missing = std::abs(motor.targetVelocity - velocity(i, island_.state));
-    const bool isOff = static_cast<int>(i) != reached && missing > settledSpeed(motor, mobilities[at]);
+    const bool isOff = (reached.empty() || !reached[i]) && missing > settledSpeed(motor, mobilities[at]);
     // At the end of its force a motor holds no more, and one that has pushed goes on, to within rounding.
     const bool isChange = change && change->motor == i && motor.mode == JointMotor::Mode::holds;
     const bool goesOn = motor.mode == JointMotor::Mode::pushes && forces[at] * motor.sign > 0;

@@ -38,6 +38,7 @@ class MotorEvents {
   double marginAt(std::size_t motor, double time, const VectorX& state);
   double velocity(std::size_t motor, const VectorX& state);
   bool rests(std::size_t motor) const;
+  std::vector<char> reachedWith(std::size_t first);
   std::vector<JointMotor>& motors() { return island_.assembly.mechanism.motors; }
 
   IslandState& island_;

@@ -601,5 +601,33 @@ TEST(JointMotors, MotorHoldsAPlateWhoseSupportSlipsAway) {
   }
 }
 
+/// Four motors of a car come to their targets at one instant: T / r on each of four wheels brings M + sum I / r^2 to
+/// v = w r, and they hold that with no torque, and all contacts as they were.
+TEST(JointMotors, MotorsOfACarComeToTheirTargetsTogether) {
+  std::string bodies = R"({"name": "ground", "shape": {"plane": {}}, "motion": "static"},
+      {"name": "chassis", "mass": 1, "shape": {"box": {"size": [1, 0.05, 0.3]}}, "position": [0, 0.12, 0]})",
+              hinges;
+  for (const double x : {0.4, -0.4})
+    for (const double z : {0.25, -0.25}) {
+      bodies += fmt::format(R"(, {{"name": "w{0}{1}", "mass": 0.5, "shape": {{"sphere": {{"radius": 0.1}}}},
+          "position": [{0}, 0.1, {1}], "orientation": {{"axis": [1, 0, 0], "angleDegrees": 90}}}})",
+                            x, z);
+      hinges +=
+          fmt::format(R"({0}{{"bodyA": "w{1}{2}", "bodyB": "chassis", "anchorB": [{1}, -0.02, {2}], "axis": [0, 1, 0],
+          "motor": {{"targetVelocity": -1, "maxTorque": 0.03}}}})",
+                      hinges.empty() ? "" : ", ", x, z);
+    }
+  const double mass = 3 + 4 * 0.4 * 0.5, reached = 0.1 * mass / (4 * 0.03 / 0.1);
+  for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+    const Trajectory moved = runMotor(1, accuracy, bodies, R"("hinges": [)" + hinges + "]");
+    EXPECT_TRUE(moved.events.empty()) << accuracy;
+    for (const Frame& frame : moved.frames) {
+      const bool holds = frame.time > reached + 1e-6;
+      EXPECT_NEAR(frame.states[0].linearVelocity.x(), 0.1 * std::min(1.0, frame.time / reached), 1e-9) << frame.time;
+      for (const JointState& joint : frame.joints) EXPECT_NEAR(joint.force, holds ? 0 : -0.03, 1e-9) << frame.time;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -207,8 +207,8 @@ TEST(LimitEvents, LetGoWhereTheTensionEnds) {
   }
 }
 
-// Without gravity, m v^2 / L = 1e-15 N is no tension: the rope is not pulled at, to be released in the same instant, over
-// and over. A tension that is one holds.
+// Without gravity, m v^2 / L = 1e-15 N is no tension: the rope is not pulled at, to be released in the same instant,
+// over and over. A tension that is one holds.
 TEST(LimitEvents, AreNotPulledAtByWhatIsNoTension) {
   const double length = 0.7;
   for (const double tension : {1e-15, 1e-3}) {

@@ -22,9 +22,11 @@ constexpr double kMinLookahead = 1.0 / 64;  // of the step that the accuracy all
 constexpr double kTurnsOfAStep = 3;         // a step is stable over so many times in which friction turns a sliding
 constexpr int kMaxShortSteps = 1000;        // in a row; after an event some are short
 constexpr int kMaxRopeRounds = 100;         // of ropes and contacts at one instant; the others come after the next step
-constexpr double kMaxPart = 1.0 / 8;        // of what a driven body takes to come to its like
-constexpr int kMaxDoubts = 20;              // steps for one event that the interpolant has and the step may not
-constexpr int kMaxMotorRounds = 3;  // of motors and contacts; those that change each other go on in the next step
+// Of the size: an error of constraints that is rounding, also of those about the origin, whose own are smaller still.
+constexpr double kTieRounding = 1e-12;
+constexpr double kMaxPart = 1.0 / 8;  // of what a driven body takes to come to its like
+constexpr int kMaxDoubts = 20;        // steps for one event that the interpolant has and the step may not
+constexpr int kMaxMotorRounds = 3;    // of motors and contacts; those that change each other go on in the next step
 
 const EventRateLimit& eventRateLimitOf(const ChosenMethod& method, double accuracy, bool isTrial) {
   if (method.keepsPromise) return kLongEventRateLimit;
@@ -335,7 +337,7 @@ void EventMotion::requireConstraintsKept() {
   const VectorX& state = island_.state;
   const double error = solver_.largestError(), size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
   if (error > startConstraintError_ + tolerances_.constraintError * (1 + size) ||
-      solver_.leaveNoMotion(state, startConstraintError_))
+      solver_.leaveNoMotion(state, startConstraintError_ + kTieRounding * tolerances_.scales.size))
     guard_->failAtConstraints(state, island_.time, error);
 }
 
