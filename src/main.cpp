@@ -192,8 +192,8 @@ void addQuestions(CLI::App& app, CommandLine& line) {
   exported->add_option("trajectory", line.input, "trajectory file")->required();
   addOutput(
       exported, line,
-      ".csv: a table of states; .glb: glTF 2.0, moving in simulated time, springs, rods and ropes drawn straight, "
-      "without joints, pushes, camera and lights");
+      ".csv: a table of states; .glb: glTF 2.0, moving in simulated time, joints with their bodies, springs, rods and "
+      "ropes drawn straight, without pushes, camera and lights");
 }
 
 /// Says what was found where CLI11 would say only that it could not be converted, or take it for a value that is not

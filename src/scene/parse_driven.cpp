@@ -63,8 +63,8 @@ std::optional<PrescribedMotion> parseKeyFrames(ObjectReader& reader, const Field
   if (faults.count() != faultsBefore) return std::nullopt;
   if (items.size() < 2 || items.size() > kMaxKeyFrames) {
     addFault(faults, field,
-             fmt::format("there are {} key frames; allowed are 2..{}; a body that keeps its place is \"static\"",
-                         items.size(), kMaxKeyFrames));
+             fmt::format("found {} key frame{}; allowed are 2..{}; a body that keeps its place is \"static\"",
+                         items.size(), items.size() == 1 ? "" : "s", kMaxKeyFrames));
     return std::nullopt;
   }
   std::vector<KeyFrame> keys;

@@ -87,18 +87,34 @@ Rope parseRope(ObjectReader& reader, LinkDraft& draft) {
   return rope;
 }
 
+/// The start must lie between the limits, where the coordinate is 0. `unit` is that of the bounds.
+void checkRange(const JointRange& range, const std::optional<Field>& lower, const std::optional<Field>& upper,
+                const char* unit, FaultList& faults) {
+  const char* const why = "the coordinate is 0 at the start, which must lie between the limits";
+  if (lower && range.lower > 0)
+    addFault(faults, *lower, fmt::format("lower is {}; {}; allowed is 0 or less ({})", range.lower, why, unit));
+  if (upper && range.upper < 0)
+    addFault(faults, *upper, fmt::format("upper is {}; {}; allowed is 0 or more ({})", range.upper, why, unit));
+}
+
 /// `unit` is that of the bounds.
 JointRange parseRange(const Field& field, const char* unit, const Range& bounds, FaultList& faults) {
   JointRange range;
   ObjectReader reader(field, faults);
   const auto lower = reader.find("lower"), upper = reader.find("upper");
-  range.lower = reader.number("lower", {bounds.least, 0}, unit, range.lower);
-  range.upper = reader.number("upper", {0, bounds.most}, unit, range.upper);
+  range.lower = reader.number("lower", bounds, unit, range.lower);
+  range.upper = reader.number("upper", bounds, unit, range.upper);
+  if (lower && upper && range.lower > range.upper)
+    addFault(faults, field, fmt::format("lower is {} and upper is {}; exchange them", range.lower, range.upper));
+  else
+    checkRange(range, lower, upper, unit, faults);
   range.restitution = reader.number("restitution", kFraction, "", 0);
-  reader.rejectUnknownKeys();
   if (!lower && !upper)
-    addFault(faults, field, "the limits have neither \"lower\" nor \"upper\"; give one or both, or leave limits out");
-  else if (range.lower == range.upper)
+    reader.addMissing({"lower", "upper"},
+                      "the limits have neither \"lower\" nor \"upper\"; give one or both, or leave limits out");
+  reader.rejectUnknownKeys();
+  if (!lower && !upper) return range;
+  if (range.lower == range.upper)
     addFault(faults, field, "lower and upper are both 0, which leaves no motion; weld the bodies instead");
   return range;
 }

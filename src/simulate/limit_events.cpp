@@ -26,10 +26,10 @@ constexpr int kTensionSamples = 4;              // a step: it is at most a small
 constexpr double kMinFirstSample = 1e-9;        // of a step: a rebound that is over sooner is none
 constexpr double kMaxFirstSample = 1.0 / 1024;  // of a step
 constexpr double kCoarsestInterval = 1.0 / 8;   // of a step, of a limit without tension: its slack is smooth
-constexpr double kLimitReach = 2;        // of the way that ends go freely in a step: what contacts may make of it
-constexpr double kNearRatio = 1e-3;      // of its size: limits so near take part in a step's contacts
-constexpr double kPullRounding = 1e-12;  // of the speed before a pull
-constexpr int kMaxPullRounds = 100;      // of pulls at one instant; those left over pull after the next step
+constexpr double kLimitReach = 2;       // of the way that ends go freely in a step: what contacts may make of it
+constexpr double kNearRatio = 1e-3;     // of its size: limits so near take part in a step's contacts
+constexpr double kPullRounding = 1e-9;  // of the speed before a pull, which rods and joints may share among them
+constexpr int kMaxPullRounds = 100;     // of pulls at one instant; those left over pull after the next step
 
 Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction) {
   return poseAt(step, attachment.body, fraction) * attachment.point;
