@@ -222,7 +222,7 @@ for row in (
     ("number in quotes", body('"mass": @"1"'), "/bodies/0/mass", 'the string "1"', "a number"),
     ("number with its unit in quotes", body('"mass": @"5 kg"'), "/bodies/0/mass", '"5 kg"', "a number", "(kg)"),
     ("degrees in a vector's place", body('"orientation": @[0, 0, 30]'), "/bodies/0/orientation", "an array", "an object"),
-    ("angle in radians", body('"orientation": @{"axis": [0, 0, 1], "angle": 0.5}'), "/bodies/0/orientation", '"angleDegrees" is missing', 'did you mean "angleDegrees"?', 2),
+    ("angle in radians", body('"orientation": {"axis": [0, 0, 1], @"angle": 0.5}'), "/bodies/0/orientation/angle", 'unknown key "angle"', 'did you mean "angleDegrees"?'),
     ("vector of two", body('"position": @[0, 1]'), "/bodies/0/position", "2 elements", "3 elements"),
     ("vector with a word", body('"position": [0, @"up", 0]'), "/bodies/0/position/1", '"up"', "a number", "(m)"),
     ("true for a mass", body('"mass": @true'), "/bodies/0/mass", "true", "a number"),
