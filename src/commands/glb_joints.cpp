@@ -98,7 +98,6 @@ void GlbJoints::follow(const Frame& frame) {
 }
 
 void GlbJoints::addRails() {
-  const double half = kRailLengthOfRod / 2 * radius_, halfSleeve = kSleeveLengthOfRod / 2 * radius_;
   for (std::size_t i = 0; i < least_.size(); ++i) {
     const Slider& slider = scene_.sliders[i];
     const auto rotation = [this](const Anchor& anchor) -> Quat {
@@ -106,9 +105,9 @@ void GlbJoints::addRails() {
       return scene_.bodies[static_cast<std::size_t>(anchor.body)].worldFromBody.rotation;
     };
     const Vec3 axis = rotation(slider.anchorB).conjugate() * (rotation(slider.anchorA) * slider.axis);
-    addBar(slider.name + " rail", slider.anchorB.body,
-           slider.anchorB.point + std::min(-half, least_[i] - halfSleeve) * axis,
-           slider.anchorB.point + std::max(half, most_[i] + halfSleeve) * axis, radius_, false);
+    const auto [from, to] = railEnds(slider, least_[i], most_[i], radius_);
+    addBar(slider.name + " rail", slider.anchorB.body, slider.anchorB.point + from * axis,
+           slider.anchorB.point + to * axis, radius_, false);
   }
 }
 

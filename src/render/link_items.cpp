@@ -245,10 +245,14 @@ void LinkBuilder::add(const Slider& slider) {
   const Vec3 axis = places_[static_cast<std::size_t>(slider.anchorA.body)].rotation * slider.axis;
   const Vec3 sleeve = now(slider.anchorA), middle = now(slider.anchorB);
   const double coordinate = axis.dot(sleeve - middle), halfSleeve = kSleeveLengthOfRod / 2 * rod_;
-  const double halfRail = kRailLengthOfRod / 2 * rod_;
-  addCylinder(middle + std::min(-halfRail, coordinate - halfSleeve) * axis,
-              middle + std::max(halfRail, coordinate + halfSleeve) * axis, rod_, kSteel);
+  const auto [from, to] = railEnds(slider, coordinate, coordinate, rod_);
+  addCylinder(middle + from * axis, middle + to * axis, rod_, kSteel);
   addCylinder(sleeve - halfSleeve * axis, sleeve + halfSleeve * axis, kSleeveOfRod * rod_, kDarkSteel);
+  const auto addStop = [&](double inner, double outwards) {  // a disc that the sleeve strikes
+    addCylinder(middle + inner * axis, middle + (inner + outwards) * axis, kStopOfRod * rod_, kSteel);
+  };
+  if (slider.limits && std::isfinite(slider.limits->lower)) addStop(from, -kStopLengthOfRod * rod_);
+  if (slider.limits && std::isfinite(slider.limits->upper)) addStop(to, kStopLengthOfRod * rod_);
   addArm(slider.anchorA, kSleeveOfRod * rod_);
   addArm(slider.anchorB, rod_);
 }
@@ -260,6 +264,13 @@ void LinkBuilder::add(const Weld& weld) {
 }
 
 }  // namespace
+
+std::pair<double, double> railEnds(const Slider& slider, double least, double most, double radius) {
+  const double half = kRailLengthOfRod / 2 * radius, halfSleeve = kSleeveLengthOfRod / 2 * radius;
+  const JointRange limits = slider.limits.value_or(JointRange{});
+  return {std::min(std::isfinite(limits.lower) ? limits.lower - halfSleeve : -half, least - halfSleeve),
+          std::max(std::isfinite(limits.upper) ? limits.upper + halfSleeve : half, most + halfSleeve)};
+}
 
 void appendLinks(const Scene& scene, const Appearance& appearance, const View& view,
                  const std::vector<RigidTransform>& worldFromBody, DrawList& list) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "render/draw_list.h"
 
 namespace cradle {
@@ -14,7 +16,13 @@ inline constexpr double kBallJointOfRod = 4;                         // radius o
 inline constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;       // radius, of an axle too; length of a hinge's pin
 inline constexpr double kSleeveOfRod = 2.5, kSleeveLengthOfRod = 9;  // radius and length of what is on a slider's rail
 inline constexpr double kRailLengthOfRod = 120;                      // longer if its sleeve is not on it
+inline constexpr double kStopOfRod = 3.5, kStopLengthOfRod = 1.5;    // radius and length of a stop at the rail's end
 inline constexpr double kBeadOfRod = 2.5;                            // radius of a weld
+
+/// Where along a slider's axis its rail begins and ends, from anchor B, m: at its limits, with room for the sleeve; on
+/// a side without one kRailLengthOfRod / 2 away; and as far as the sleeve goes, from `least` to `most`. `radius` is
+/// that of a drawn rod.
+std::pair<double, double> railEnds(const Slider& slider, double least, double most, double radius);
 
 /// Appends what is seen of springs, rods, ropes and joints: coils, thin cylinders, small spheres at their ends, and
 /// mounts where they hang from the world.

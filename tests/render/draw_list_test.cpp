@@ -258,6 +258,23 @@ TEST(DrawList, RailOfASliderStaysOnBAndCarriesTheSleeveOfA) {
   }
 }
 
+// The sleeve reaches the end of the rail at a limit, where a stop stands around it; beyond the other side is none.
+TEST(DrawList, RailEndsAtTheLimitsOfItsSlider) {
+  Scene scene = emptyScene();
+  addBody(scene, Box{{0.4, 0.1, 0.4}}, {Quat::Identity(), {0, 1, 0}});
+  scene.sliders.push_back({"", "", {0, {0, 0.05, 0}}, {kWorld, {0, 1.05, 0}}, {1, 0, 0}});
+  scene.sliders[0].limits.emplace().upper = 0.07;
+  Frame frame = startFrame(scene);
+  frame.states[0].position.x() += 0.07;
+  const DrawList list = listOf(scene, frame);
+  ASSERT_EQ(list.cylinders.size(), 3u);
+  const CylinderItem &rail = list.cylinders[0], &sleeve = list.cylinders[1], &stop = list.cylinders[2];
+  const double end = rail.center.x() + rail.length / 2;
+  EXPECT_NEAR(end, sleeve.center.x() + sleeve.length / 2, 1e-14);
+  EXPECT_NEAR(stop.center.x() - stop.length / 2, end, 1e-14);
+  EXPECT_GT(stop.radius, sleeve.radius);
+}
+
 TEST(DrawList, WeldIsABead) {
   Scene scene = emptyScene();
   addBody(scene, Box{{0.4, 0.1, 0.4}}, {Quat::Identity(), {0, 1, 0}});
