@@ -22,6 +22,7 @@ constexpr std::size_t kFewBodies = 4;     // that move: many cost more than such
 // less than the accuracy in nearly all frames (of sliding_blocks, belt, shaken_table; 300 times as much in one); where
 // friction jumps, 100 to 10^7 times as much.
 constexpr double kMaxDefect = 10;
+constexpr double kMuchSlower = 0.25;  // sliding that loses less in a step is far from its stop
 
 /// s: of contact that events do not serve. A few bodies move as fast as gravity moves them through their own size: the
 /// same ones, smaller, take the same steps in less time.
@@ -166,13 +167,27 @@ void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
   bookNumerical(energyConstant(mechanism, island_.step.startState), mechanism, reported_);
 }
 
+/// Whether a contact slides much more slowly at one end of the step than at the other one.
+bool IslandSolver::mayFrictionTurn(const std::vector<ContactConstraint>& contacts) const {
+  const auto slides = [](const ContactConstraint& contact) { return contact.motion == ContactMotion::sliding; };
+  if (std::none_of(contacts.begin(), contacts.end(), slides)) return false;
+  const std::vector<RigidBody>& bodies = island_.assembly.mechanism.bodies;
+  std::vector<BodyFrame> atStart, atEnd;
+  findBodyFrames(bodies, island_.step.startState, atStart), findBodyFrames(bodies, island_.step.state, atEnd);
+  return std::any_of(contacts.begin(), contacts.end(), [&](const ContactConstraint& contact) {
+    if (!slides(contact)) return false;
+    const double first = tangentialVelocity(kinematicsOf(contact, island_.step.startState, atStart)).norm(),
+                 last = tangentialVelocity(kinematicsOf(contact, island_.step.state, atEnd)).norm();
+    return std::min(first, last) < kMuchSlower * std::max(first, last);
+  });
+}
+
 /// Where sliding is about to stop, friction across it may turn so fast that the stages of a step, and its interpolant
 /// with them, say nothing of what is between them, though the step is right. The rates of the reported state tell that
 /// from the forces there: it becomes the end of a shorter step from the same start. True if it does.
 bool IslandSolver::stepWhereForcesJump(double time) {
   const auto* events = std::get_if<EventMotion>(&motion_);
-  const auto slides = [](const ContactConstraint& contact) { return contact.motion == ContactMotion::sliding; };
-  if (!events || std::none_of(events->contactsOfStep().begin(), events->contactsOfStep().end(), slides)) return false;
+  if (!events || !mayFrictionTurn(events->contactsOfStep())) return false;
   const Step& step = island_.step;
   bool jump = false;
   withForcesOfStep(*events, [&] {

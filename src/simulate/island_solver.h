@@ -59,6 +59,7 @@ class IslandSolver {
   /// The state of a frame inside a step. Its difference from the energy of the step's start is an error of that frame
   /// alone.
   void interpolateAt(double time, bool keepsConstraints);
+  bool mayFrictionTurn(const std::vector<ContactConstraint>& contacts) const;
   bool stepWhereForcesJump(double time);
   /// Calls evaluate() with contacts, constraints, pushes and motors as they were in the last step of events.
   template <class Evaluate>
