@@ -13,7 +13,7 @@ namespace cradle {
 namespace {
 
 // Of the fastest contact before an impact: a solved one leaves no contact that closes as fast. Rounding leaves 1e-12.
-constexpr double kNoRoom = 1e-3;
+constexpr double kNoRoom = 0.01;
 
 /// m/s: of the faster of the two bodies' centres.
 double contactSpeed(const Contact& contact, const VectorX& state) {
@@ -220,8 +220,14 @@ double EventImpacts::resolveImpact(std::vector<ImpactContact>& impacts) {
 /// with which all contacts open. Throws Error(unstable) then.
 void EventImpacts::requireRoom(const VectorX& approach, const std::vector<ImpactContact>& impacts) const {
   if (island_.assembly.mechanism.driven.empty()) return;
-  double fastest = 0;
-  for (const ImpactContact& impact : impacts) fastest = std::max(fastest, contactSpeed(impact.contact, approach));
+  double fastest = 0, led = 0;  // m/s
+  for (const ImpactContact& impact : impacts) {
+    fastest = std::max(fastest, contactSpeed(impact.contact, approach));
+    for (const int body : {impact.contact.bodyA, impact.contact.bodyB})
+      if (body != kFixed && island_.assembly.mechanism.bodies[static_cast<std::size_t>(body)].isDriven())
+        led = std::max(led, pointVelocity(body, impact.contact.point, approach).norm());
+  }
+  if (led < kNoRoom * fastest) return;  // what others leave unsolved is none of theirs
   for (const ImpactContact& impact : impacts)
     if (openingSpeed(impact.contact, island_.state) < -kNoRoom * fastest &&
         impact.contact.separation < tolerances_.touch)
