@@ -11,7 +11,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kMaxIterations = 200;  // of the power method: 1 % of a rate is there by then
+constexpr int kMaxIterations = 200;  // of the power method, which else ends by itself; bounds the cost
 constexpr double kConverged = 1e-6;  // relative growth: the limits that follow are wanted to 1 %
 
 using Coefficient = double SpringForce::*;

@@ -79,7 +79,7 @@ ConservationRecord::ConservationRecord(const Assembly& assembly, double accuracy
       start_(invariantsOf(assembly.mechanism, assembly.state)),
       startSpin_(momentumSizesOf(assembly.mechanism.bodies, assembly.state, start_.momentum).sum) {
   const double gravity = assembly.mechanism.gravity.norm();
-  largestEnergy_ = start_.kinetic;  // what an impact takes at once counts too
+  largestEnergy_ = start_.kinetic;  // an impact may take all of it at once
   for (const RigidBody& body : assembly.mechanism.bodies) {
     const double gyration = radiusOfGyration(body);
     largestEnergy_ += body.mass * (gravity * gyration + accuracy * accuracy);

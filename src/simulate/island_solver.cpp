@@ -191,7 +191,7 @@ bool IslandSolver::stepWhereForcesJump(double time) {
   const Step& step = island_.step;
   bool jump = false;
   withForcesOfStep(*events, [&] {
-    setResting(still_);  // what the end of the step has woken has rested in it
+    setResting(still_);  // bodies that the end of the step has woken have rested in it
     frameEquations_.evaluate(time, reported_, derivative_);
     interpolateRate(step, (time - step.time) / step.timeStep, frameStep_.work);
     const Eigen::Index first = poseComponents(reported_), count = reported_.size() - kLedgerSize - first;

@@ -53,5 +53,16 @@ TEST(PrescribedMotion, ShiftMovesAllPoses) {
   }
 }
 
+TEST(PrescribedMotion, ComesToItsLikeInAPeriodATurnOrAWay) {
+  EXPECT_EQ(timeScale(OscillatingMotion{{}, Vec3::UnitY(), 0.1, -4, 0}, 7), 0.25);
+  EXPECT_NEAR(timeScale(SteadyMotion{{}, Vec3::UnitX(), Vec3(0, 0, -2 * kPi)}, 7), 1, 1e-15);
+  EXPECT_EQ(timeScale(SteadyMotion{{}, Vec3::UnitX(), Vec3::Zero()}, 7), INFINITY);
+  EXPECT_NEAR(timeScale(wave(false), 0.7), 0.6, 1e-15);  // from 0.5 to 1.1 s
+  EXPECT_NEAR(timeScale(wave(false), 1.1), 0.8, 1e-15);
+  EXPECT_EQ(timeScale(wave(false), 0.4), INFINITY);
+  EXPECT_EQ(timeScale(wave(false), 2.6), INFINITY);
+  EXPECT_NEAR(timeScale(wave(true), 2.7), 0.6, 1e-15);
+}
+
 }  // namespace
 }  // namespace cradle

@@ -94,7 +94,7 @@ double bendBound(const Step& step, const Part& part) {
 /// Lower bound on the length of an interpolated quaternion: from the nearest of so many samples it falls by at most
 /// 1/8.
 double leastLength(const Step& step, Eigen::Index at, double slope) {
-  constexpr double kMaxSamples = 32;  // a body that rotates faster in a step is bounded by its whole size anyway
+  constexpr double kMaxSamples = 32;  // for a slope of 8; with a larger one the bound is coarser
   const double samples = 1 + std::floor(std::min(kMaxSamples, 4 * slope));
   double least = step.startState.segment<4>(at).norm();
   for (double i = 1; i <= samples; ++i) least = std::min(least, componentsAt<4>(step, at, i / samples).norm());

@@ -13,7 +13,7 @@ namespace cradle {
 namespace {
 
 // Of the fastest contact before an impact: a solved one leaves no contact that closes as fast. Rounding leaves 1e-12.
-constexpr double kNoRoom = 0.01;
+constexpr double kMinClosingRatio = 0.01;
 
 /// m/s: of the faster of the two bodies' centres.
 double contactSpeed(const Contact& contact, const VectorX& state) {
@@ -227,10 +227,10 @@ void EventImpacts::requireRoom(const VectorX& approach, const std::vector<Impact
       if (body != kFixed && island_.assembly.mechanism.bodies[static_cast<std::size_t>(body)].isDriven())
         led = std::max(led, pointVelocity(body, impact.contact.point, approach).norm());
   }
-  if (led < kNoRoom * fastest) return;  // what others leave unsolved is none of theirs
+  if (led < kMinClosingRatio * fastest) return;  // faults of others' impacts are none of theirs
+  const double closing = std::max(kMinClosingRatio * fastest, tolerances_.minOpeningSpeed(tolerances_.scales.size));
   for (const ImpactContact& impact : impacts)
-    if (openingSpeed(impact.contact, island_.state) < -kNoRoom * fastest &&
-        impact.contact.separation < tolerances_.touch)
+    if (openingSpeed(impact.contact, island_.state) < -closing && impact.contact.separation < tolerances_.touch)
       island_.failAtNoRoom(impact.contact);
 }
 

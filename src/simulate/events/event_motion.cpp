@@ -24,9 +24,9 @@ constexpr int kMaxShortSteps = 1000;        // in a row; after an event some are
 constexpr int kMaxRopeRounds = 100;         // of ropes and contacts at one instant; the others come after the next step
 // Of the size: an error of constraints that is rounding, also of those about the origin, whose own are smaller still.
 constexpr double kTieRounding = 1e-12;
-constexpr double kMaxPart = 1.0 / 8;  // of what a driven body takes to come to its like
-constexpr int kMaxDoubts = 20;        // steps for one event that the interpolant has and the step may not
-constexpr int kMaxMotorRounds = 3;    // of motors and contacts; those that change each other go on in the next step
+constexpr double kMaxStepRatio = 1.0 / 8;  // of what a driven body takes to come to its like
+constexpr int kMaxDoubts = 20;             // steps for one event that the interpolant has and the step may not
+constexpr int kMaxMotorRounds = 3;  // of motors and contacts; those that change each other go on in the next step
 
 const EventRateLimit& eventRateLimitOf(const ChosenMethod& method, double accuracy, bool isTrial) {
   if (method.keepsPromise) return kLongEventRateLimit;
@@ -192,15 +192,16 @@ bool EventMotion::isStillAccurate() {
   return false;
 }
 
-/// s. Where impacts are frequent, steps are not planned far beyond the next one. What driven bodies hold has no error,
-/// however long a step is: changes of its contacts, ropes and stops are looked for several times in a period of these.
+/// s. Where impacts are frequent, steps are not planned far beyond the next one. A body that driven ones
+/// hold has no error, however long a step is: changes of its contacts, ropes and stops are looked for several times in
+/// a period of these.
 double EventMotion::longestStep() const {
   const Mechanism& mechanism = island_.assembly.mechanism;
   double longest = std::max(kMaxLengthGrowth * *std::max_element(lengths_.begin(), lengths_.end()),
                             kMinLookahead * stepSize_.timeStep);
   if (!mechanism.contacts.empty() || ropes_.hasLimits())
     for (const DrivenBody& driven : mechanism.driven)
-      longest = std::min(longest, kMaxPart * timeScale(driven.motion, island_.time));
+      longest = std::min(longest, kMaxStepRatio * timeScale(driven.motion, island_.time));
   return longest;
 }
 
