@@ -326,13 +326,14 @@ double ConstraintSolver::contradiction(const VectorX& state) {
   return asked > 0 ? left / asked : 0;
 }
 
-double ConstraintSolver::largestRate(const VectorX& state) const {
-  double largest = 0;
-  for (const ConstraintBlock& block : blocks_)
-    withRows(block.rows, [&](auto rows) {
+ConstraintRate ConstraintSolver::largestRate(const VectorX& state) const {
+  ConstraintRate largest;
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    withRows(blocks_[i].rows, [&](auto rows) {
       std::array<double, rows> rates;
-      findRates<rows>(block, state, rates.data());
-      for (const double rate : rates) largest = std::max(largest, std::abs(rate) / block.scale);
+      findRates<rows>(blocks_[i], state, rates.data());
+      for (const double rate : rates)
+        if (std::abs(rate) / blocks_[i].scale > largest.rate) largest = {std::abs(rate) / blocks_[i].scale, i};
     });
   return largest;
 }

@@ -9,6 +9,12 @@
 
 namespace cradle {
 
+/// How fast velocities violate a constraint.
+struct ConstraintRate {
+  double rate = 0;        // m/s or rad/s
+  std::size_t block = 0;  // among the blocks
+};
+
 /// Solves W lambda = b, with the Delassus operator W = J M^-1 J^T of the rows of a set of bilateral constraints, and
 /// applies the impulse response M^-1 J^T lambda, by a direct factorisation (D. Baraff, "Linear-time dynamics using
 /// Lagrange multipliers", SIGGRAPH 1996): exact at any mass ratio, linear in the length of a chain. Redundant rows are
@@ -64,8 +70,8 @@ class ConstraintSolver {
   /// Where motion only passes a place at which it could take another way, forces can.
   bool leaveNoMotion(const VectorX& state, double error);
 
-  /// How far the velocities are from keeping the constraints: max |J v| / scale, in m/s or rad/s.
-  double largestRate(const VectorX& state) const;
+  /// How far the velocities are from keeping the constraints: max |J v| / scale.
+  ConstraintRate largestRate(const VectorX& state) const;
 
  private:
   /// Two blocks that share a body, which puts a block beside the diagonal of the matrix.

@@ -47,13 +47,11 @@ ModelFacts examine(const Model& model, const SolidReport& report) {
 }
 
 void warnOfNotes(const Field& field, std::vector<std::string> notes, const std::vector<std::string>& more,
-                 SceneDraft& scene, const FaultList& faults) {
+                 FaultList& faults) {
   for (const std::string& note : more) {
     if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   }
-  for (const std::string& note : notes) {
-    scene.warnings.push_back(faults.where(field.place(), field.pointer) + ": " + note);
-  }
+  for (const std::string& note : notes) addWarning(faults, field, note);
 }
 
 std::optional<ModelFacts> load(const BodyDraft& draft, SceneDraft& scene, const ModelSource& models, Faults faults) {
@@ -61,7 +59,7 @@ std::optional<ModelFacts> load(const BodyDraft& draft, SceneDraft& scene, const 
     LoadedModel loaded = models(draft.mesh);
     loaded.model.name = modelName(draft.mesh);
     const SolidReport report = checkSolid(loaded.model.solid);
-    warnOfNotes(*draft.meshField, loaded.notes, report.notes, scene, faults.mesh);
+    warnOfNotes(*draft.meshField, loaded.notes, report.notes, faults.text);
     ModelFacts facts = examine(loaded.model, report);
     facts.index = static_cast<int>(scene.scene.models.size());
     scene.scene.models.push_back(std::move(loaded.model));
@@ -133,13 +131,11 @@ void chooseCollision(const BodyDraft& draft, ModelFacts& facts, Scene& scene, Fa
   if (collision.recognised.isConvex && !takesPrimitive) findHull(draft, solid, facts, collision, faults);
 }
 
-MassProperties massOf(const BodyDraft& draft, const ModelFacts& facts, SceneDraft& scene, FaultList& faults) {
+MassProperties massOf(const BodyDraft& draft, const ModelFacts& facts, const Scene& scene, FaultList& faults) {
   if (draft.body.motion != Motion::dynamic) return {};
-  if (!facts.isSolid && !draft.centerOfMass) {
-    scene.warnings.push_back(faults.where(draft.field.place(), draft.field.pointer) +
-                             ": the mesh is no solid and centerOfMass is not given; it is taken as [0, 0, 0]");
-  }
-  const double density = scene.scene.materials[static_cast<std::size_t>(draft.body.material)].density;
+  if (!facts.isSolid && !draft.centerOfMass)
+    addWarning(faults, draft.field, "the mesh is no solid and centerOfMass is not given; it is taken as [0, 0, 0]");
+  const double density = scene.materials[static_cast<std::size_t>(draft.body.material)].density;
   return completeMass(draft, facts.uniform, density, faults);
 }
 
@@ -156,7 +152,7 @@ void complete(BodyDraft& draft, ModelFacts& facts, SceneDraft& scene, Faults fau
   if (!hasUsableSize(draft, facts, faults.text)) return;
   if (draft.body.motion != Motion::fixed && !canMove(draft, facts, faults.mesh)) return;
   chooseCollision(draft, facts, scene.scene, faults.text);
-  const MassProperties properties = massOf(draft, facts, scene, faults.text);
+  const MassProperties properties = massOf(draft, facts, scene.scene, faults.text);
   for (int i = draft.firstBody; i < draft.firstBody + draft.bodyCount; ++i) {
     Body& body = scene.scene.bodies[static_cast<std::size_t>(i)];
     body.shape = ModelShape{facts.index};

@@ -33,6 +33,10 @@ void FaultList::replace(std::size_t number, const TextPlace& place, const std::s
   if (number < faults_.size()) faults_[number] = faultOf(place, pointer, what);
 }
 
+void FaultList::warn(const TextPlace& place, const std::string& pointer, const std::string& what) {
+  warnings_.push_back(faultOf(place, pointer, what).line);
+}
+
 bool FaultList::isFull() const {
   return faults_.size() == kMaxFaults;
 }

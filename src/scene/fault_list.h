@@ -10,7 +10,7 @@
 namespace cradle {
 
 /// What is wrong with a scene file, so that its writer hears of it in one go; of a file of millions of faults the first
-/// thousand.
+/// thousand. And its warnings: what is allowed, and may not be what its writer means.
 class FaultList {
  public:
   /// `kind` is that of the Error.
@@ -21,6 +21,11 @@ class FaultList {
   std::size_t add(const TextPlace& place, const std::string& pointer, const std::string& what);
   /// Puts a fault that tells more of the same mistake in the place of another.
   void replace(std::size_t number, const TextPlace& place, const std::string& pointer, const std::string& what);
+
+  /// `what` reads as that of a fault.
+  void warn(const TextPlace& place, const std::string& pointer, const std::string& what);
+  /// Each with its place, in the order in which they came.
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
   /// All faults, those that are counted but no longer kept included.
   std::size_t count() const { return count_; }
@@ -43,6 +48,7 @@ class FaultList {
   std::string file_;
   ErrorKind kind_;
   std::vector<Fault> faults_;
+  std::vector<std::string> warnings_;
   std::size_t count_ = 0;
 };
 

@@ -79,7 +79,7 @@ LoadedScene parseScene(const std::string& text, const std::string& path, const M
   collectLinks(draft);
   draft.scene.path = path;
   draft.scene.text = text;
-  return {std::move(draft.scene), std::move(draft.warnings)};
+  return {std::move(draft.scene), textFaults.warnings()};
 }
 
 LoadedScene loadScene(const std::string& path, const std::string& assetRoot) {

@@ -53,17 +53,15 @@ void parseName(ObjectReader& reader, BodyDraft& draft) {
 }
 
 // The mass and velocities of a body that no force moves go unused; its writer should know.
-void warnOfUnused(ObjectReader& reader, const BodyDraft& draft, std::vector<std::string>& warnings) {
+void warnOfUnused(ObjectReader& reader, const BodyDraft& draft) {
   if (draft.body.motion == Motion::dynamic) return;
   const bool isDriven = draft.body.motion == Motion::driven;
   std::vector<const char*> keys = {"mass", "centerOfMass", "inertiaTensor"};
   if (!isDriven) keys.insert(keys.end(), {"linearVelocity", "angularVelocity", "angularVelocityBody"});
   for (const char* key : keys) {
-    if (const auto field = reader.find(key)) {
-      warnings.push_back(fmt::format("{}: {} is not used, because the body is {}",
-                                     reader.faults().where(field->place(), field->pointer), key,
-                                     isDriven ? "driven" : "static"));
-    }
+    if (const auto field = reader.find(key))
+      addWarning(reader.faults(), *field,
+                 fmt::format("{} is not used, because the body is {}", key, isDriven ? "driven" : "static"));
   }
 }
 
@@ -211,7 +209,7 @@ void parseBody(const Field& field, SceneDraft& scene, FaultList& faults) {
   parsePose(reader, draft);
   parseDriven(reader, draft);
   if (faults.count() == faultsBefore && !draft.meshField) completePrimitive(draft, scene, faults);
-  warnOfUnused(reader, draft, scene.warnings);
+  warnOfUnused(reader, draft);
   writeOutBodies(reader, draft, scene);
   reader.rejectUnknownKeys();
   draft.isSound = faults.count() == faultsBefore;

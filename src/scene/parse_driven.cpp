@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/elementary.h"
@@ -45,6 +46,24 @@ void checkOrder(const KeyFrame& before, const KeyFrame& key, const Field& field,
                     kMaxTurnDegrees));
 }
 
+/// The largest angle that the orientation of a key frame without faults gives, degrees; 0 if it gives none.
+double largestAngle(const Field& keyFrame, FaultList& faults) {
+  const auto orientation = ObjectReader(keyFrame, faults).find("orientation");
+  if (!orientation) return 0;
+  ObjectReader reader(*orientation, faults);
+  const Vec3 angles = reader.vector("eulerDegrees", kAnyNumber, "", Vec3::Zero());
+  return std::max(angles.cwiseAbs().maxCoeff(), std::abs(reader.number("angleDegrees", kAnyNumber, "", 0)));
+}
+
+/// Of a key frame at `field` that is turned as the one before, though its angle is a whole turn or more.
+void warnOfWholeTurns(const KeyFrame& before, const KeyFrame& key, const Field& field, FaultList& faults) {
+  const double turn = 2 * (key.pose.rotation * before.pose.rotation.conjugate()).vec().norm();  // of a small one
+  if (turn > kSameTurn || largestAngle(field, faults) < 360) return;
+  addWarning(faults, field,
+             "the body is turned as in the key frame before, and does not turn: orientations count no whole turns; "
+             "give key frames in between");
+}
+
 void checkEndsMeet(const KeyFrame& first, const KeyFrame& last, const Field& repeat, FaultList& faults) {
   const double way = (last.pose.translation - first.pose.translation).norm();
   const double turn = 2 * (last.pose.rotation * first.pose.rotation.conjugate()).vec().norm();  // of a small one
@@ -68,9 +87,11 @@ std::optional<PrescribedMotion> parseKeyFrames(ObjectReader& reader, const Field
     return std::nullopt;
   }
   std::vector<KeyFrame> keys;
-  for (const Field& item : items) {
-    keys.push_back(parseKeyFrame(item, usual, faults));
-    if (keys.size() > 1) checkOrder(keys[keys.size() - 2], keys.back(), item, faults);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    keys.push_back(parseKeyFrame(items[i], usual, faults));
+    if (i == 0 || faults.count() != faultsBefore) continue;
+    checkOrder(keys[i - 1], keys[i], items[i], faults);
+    warnOfWholeTurns(keys[i - 1], keys[i], items[i], faults);
   }
   if (repeats) checkEndsMeet(keys.front(), keys.back(), *reader.find("repeat"), faults);
   if (faults.count() != faultsBefore) return std::nullopt;
@@ -90,12 +111,18 @@ OscillatingMotion parseOscillation(const Field& field, const RigidTransform& mid
   return motion;
 }
 
-/// The first key of several that is there.
-std::optional<Field> firstOf(ObjectReader& reader, const std::vector<const char*>& keys) {
-  std::optional<Field> first;
-  for (const char* key : keys)
-    if (const auto field = reader.find(key); field && !first) first = field;
-  return first;
+bool isMotion(const std::string& word) {
+  return word == "dynamic" || word == "static";
+}
+
+/// The key that says how a body is led is there, but not that it is.
+void rejectUnled(ObjectReader& reader, const char* key, const Field& field) {
+  const std::string what = fmt::format("{} is for driven bodies; give this one \"motion\": \"driven\" too", key);
+  const auto motion = reader.find("motion");
+  if (!motion)
+    reader.addMissing({"motion"}, what);
+  else if (const auto* word = std::get_if<std::string>(&motion->value->content); word && isMotion(*word))
+    addFault(reader.faults(), field, what);  // a word that is none is a fault already
 }
 
 }  // namespace
@@ -106,15 +133,21 @@ void parseDriven(ObjectReader& reader, BodyDraft& draft) {
   const auto keyFrames = reader.find("keyFrames"), oscillation = reader.find("oscillation");
   const auto repeat = reader.find("repeat");
   if (body.motion != Motion::driven) {
-    if (const auto field = firstOf(reader, {"keyFrames", "oscillation", "repeat"}))
-      addFault(faults, *field, "only a driven body is led; give it \"motion\": \"driven\" too");
+    for (const char* key : {"keyFrames", "oscillation", "repeat"})
+      if (const auto field = reader.find(key)) return rejectUnled(reader, key, *field);
     return;
   }
-  const auto velocity = firstOf(reader, {"linearVelocity", "angularVelocity", "angularVelocityBody"});
-  if (int(keyFrames.has_value()) + int(oscillation.has_value()) + int(velocity.has_value()) != 1) {
-    addFault(faults, draft.field,
-             "a driven body moves as one of these says: \"keyFrames\", \"oscillation\", or \"linearVelocity\" and "
-             "\"angularVelocity\"; give one of them");
+  const char* velocityKey = "linearVelocity";
+  for (const char* key : {"angularVelocity", "angularVelocityBody"})
+    if (!reader.find(velocityKey)) velocityKey = key;
+  const bool hasVelocity = reader.find(velocityKey).has_value();
+  if (int(keyFrames.has_value()) + int(oscillation.has_value()) + int(hasVelocity) != 1) {
+    reader.addMissing(
+        {"keyFrames", "oscillation", "linearVelocity", "angularVelocity", "angularVelocityBody"},
+        fmt::format(
+            "found {} for the way of the driven body; allowed is one of \"keyFrames\", \"oscillation\", and velocities "
+            "(\"linearVelocity\", \"angularVelocity\" or \"angularVelocityBody\")",
+            reader.keysFound({"keyFrames", "oscillation", velocityKey})));
     return;
   }
   if (repeat && !keyFrames) addFault(faults, *repeat, "repeat is for keyFrames; leave it out");

@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "scene/parse_pose.h"
+
 namespace cradle {
 namespace {
 
 constexpr double kMaxVertices = 2147483647;  // vertex indices are int
+constexpr double kLikelyDegrees = 10;        // rad: limits beyond them are rarely meant, and 10 degrees and more often
 constexpr int kMaxDirections = 1000;         // of a body: so many take 1 s and 150 MB at the start of a run
 
 /// Whether no force moves it.
@@ -87,6 +92,14 @@ Rope parseRope(ObjectReader& reader, LinkDraft& draft) {
   return rope;
 }
 
+/// Limits of a hinge that are whole numbers of many radians are likely to be degrees.
+void warnOfDegrees(const char* key, double limit, const Field& field, FaultList& faults) {
+  if (std::abs(limit) < kLikelyDegrees || std::floor(limit) != limit) return;
+  addWarning(faults, field,
+             fmt::format("{} is {} rad, {:.3g} turns; {} degrees would be {:.6g} rad", key, limit,
+                         limit / (360 * kRadiansPerDegree), limit, limit * kRadiansPerDegree));
+}
+
 /// The start must lie between the limits, where the coordinate is 0. `unit` is that of the bounds.
 void checkRange(const JointRange& range, const std::optional<Field>& lower, const std::optional<Field>& upper,
                 const char* unit, FaultList& faults) {
@@ -97,9 +110,10 @@ void checkRange(const JointRange& range, const std::optional<Field>& lower, cons
     addFault(faults, *upper, fmt::format("upper is {}; {}; allowed is 0 or more ({})", range.upper, why, unit));
 }
 
-/// `unit` is that of the bounds.
-JointRange parseRange(const Field& field, const char* unit, const Range& bounds, FaultList& faults) {
+JointRange parseRange(const Field& field, bool isHinge, FaultList& faults) {
   JointRange range;
+  const char* const unit = isHinge ? "rad" : "m";
+  const Range bounds = isHinge ? kTurns : kCoordinates;
   ObjectReader reader(field, faults);
   const auto lower = reader.find("lower"), upper = reader.find("upper");
   range.lower = reader.number("lower", bounds, unit, range.lower);
@@ -108,6 +122,8 @@ JointRange parseRange(const Field& field, const char* unit, const Range& bounds,
     addFault(faults, field, fmt::format("lower is {} and upper is {}; exchange them", range.lower, range.upper));
   else
     checkRange(range, lower, upper, unit, faults);
+  if (isHinge && lower) warnOfDegrees("lower", range.lower, *lower, faults);
+  if (isHinge && upper) warnOfDegrees("upper", range.upper, *upper, faults);
   range.restitution = reader.number("restitution", kFraction, "", 0);
   if (!lower && !upper)
     reader.addMissing({"lower", "upper"},
@@ -121,9 +137,19 @@ JointRange parseRange(const Field& field, const char* unit, const Range& bounds,
 
 /// The keys of a motor, by what it works on.
 struct MotorKeys {
-  const char *most, *constant, *velocityUnit, *forceUnit;
+  const char *owner, *most, *constant, *velocityUnit, *forceUnit;
 };
-constexpr MotorKeys kHingeMotor{"maxTorque", "torque", "rad/s", "N m"}, kSliderMotor{"maxForce", "force", "m/s", "N"};
+constexpr MotorKeys kHingeMotor{"hinge", "maxTorque", "torque", "rad/s", "N m"},
+    kSliderMotor{"slider", "maxForce", "force", "m/s", "N"};
+
+void refuseKeysOf(const MotorKeys& other, const MotorKeys& keys, ObjectReader& reader) {
+  const auto refuse = [&](const char* found, const char* allowed) {
+    reader.refuse(found, fmt::format("{} is for the motor of a {}; a {} has \"{}\" ({})", found, other.owner,
+                                     keys.owner, allowed, keys.forceUnit));
+  };
+  refuse(other.most, keys.most);
+  refuse(other.constant, keys.constant);
+}
 
 JointDrive parseMotor(const Field& field, const MotorKeys& keys, FaultList& faults) {
   JointDrive motor;
@@ -134,12 +160,17 @@ JointDrive parseMotor(const Field& field, const MotorKeys& keys, FaultList& faul
   if (target) motor.targetVelocity = reader.number("targetVelocity", kSpeeds, keys.velocityUnit, 0);
   if (most) motor.force = reader.number(keys.most, {0, kForces.most}, keys.forceUnit, 0);
   if (constant) motor.force = reader.number(keys.constant, kForces, keys.forceUnit, 0);
+  refuseKeysOf(&keys == &kHingeMotor ? kSliderMotor : kHingeMotor, keys, reader);
+  const bool isWhole = target.has_value() != constant.has_value() && target.has_value() == most.has_value();
+  if (faults.count() == faultsBefore && !isWhole)
+    reader.addMissing(
+        {"targetVelocity", keys.most, keys.constant},
+        fmt::format("found {} in the motor; allowed is either a \"targetVelocity\" with a \"{}\" or a "
+                    "constant \"{}\"",
+                    reader.keysFound({"targetVelocity", keys.most, keys.constant}), keys.most, keys.constant));
   reader.rejectUnknownKeys();
-  if (faults.count() != faultsBefore) return motor;
-  if (target.has_value() == constant.has_value() || target.has_value() != most.has_value())
-    addFault(faults, field,
-             fmt::format("a motor has either a \"targetVelocity\" with a \"{}\" or a constant \"{}\"", keys.most,
-                         keys.constant));
+  if (faults.count() == faultsBefore && most && motor.force == 0)
+    addWarning(faults, *most, fmt::format("{} is 0: the motor moves nothing", keys.most));
   return motor;
 }
 
@@ -149,10 +180,14 @@ Joint parseJoint(ObjectReader& reader, LinkDraft&) {
   if constexpr (requires { joint.axis; }) joint.axis = reader.direction("axis", joint.axis);
   if constexpr (requires { joint.limits; }) {
     constexpr bool isHinge = std::is_same_v<Joint, Hinge>;
-    if (const auto field = reader.find("limits"))
-      joint.limits = parseRange(*field, isHinge ? "rad" : "m", isHinge ? kTurns : kCoordinates, reader.faults());
+    if (const auto field = reader.find("limits")) joint.limits = parseRange(*field, isHinge, reader.faults());
     if (const auto field = reader.find("motor"))
       joint.motor = parseMotor(*field, isHinge ? kHingeMotor : kSliderMotor, reader.faults());
+  } else {
+    for (const char* key : {"limits", "motor"})
+      reader.refuse(key, fmt::format("{} is for hinges and sliders, which have one coordinate; leave it out, or take "
+                                     "one of these",
+                                     key));
   }
   const bool collide = reader.boolean("collide", false);
   if constexpr (requires { joint.collide; }) joint.collide = collide;  // there is no contact inside one body of welds

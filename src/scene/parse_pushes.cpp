@@ -45,31 +45,34 @@ void parseAction(ObjectReader& reader, Push& push) {
 }
 
 /// False if it does not and may not be pushed: what else the push says is of no account then.
-bool checkThatItMoves(const Push& push, const Field& name, SceneDraft& scene, FaultList& faults) {
-  const Body& body = scene.scene.bodies[static_cast<std::size_t>(push.body)];
+bool checkThatItMoves(const Push& push, const Field& field, const Field& name, const Scene& scene, FaultList& faults) {
+  const Body& body = scene.bodies[static_cast<std::size_t>(push.body)];
   if (body.motion == Motion::driven)
     addFault(faults, name,
              fmt::format("body {} is driven and moves as it is told, whatever pushes it; push a dynamic body, or give "
                          "this one the motion",
                          inQuotes(body.name)));
   if (body.motion == Motion::fixed)
-    scene.warnings.push_back(
-        fmt::format("{}: the push moves nothing, because body {} is static", push.where, inQuotes(body.name)));
+    addWarning(faults, field, fmt::format("the push moves nothing, because body {} is static", inQuotes(body.name)));
   return body.motion != Motion::driven;
 }
 
-Push parsePush(const Field& field, SceneDraft& scene, FaultList& faults) {
+Push parsePush(const Field& field, const SceneDraft& scene, FaultList& faults) {
   Push push;
   push.where = faults.where(field.place(), field.pointer);
   ObjectReader reader(field, faults);
   const auto name = reader.require("body");
   const auto body = name ? findNamed(*name, scene.bodyIndex, "body", faults) : std::nullopt;
   push.body = body.value_or(kWorld);
-  if (push.body != kWorld && !checkThatItMoves(push, *name, scene, faults)) return push;
+  if (push.body != kWorld && !checkThatItMoves(push, field, *name, scene.scene, faults)) return push;
   parseAction(reader, push);
   push.start = reader.number("start", kInstants, "s", 0.5);
   push.duration = reader.number("duration", kPushDurations, "s", 0.02);
   reader.rejectUnknownKeys();
+  if (push.start >= scene.scene.duration)
+    addWarning(faults, reader.find("start").value_or(field),
+               fmt::format("the push begins at {} s, when the run has ended ({} s), and moves nothing", push.start,
+                           scene.scene.duration));
   return push;
 }
 

@@ -76,6 +76,10 @@ void addFault(FaultList& faults, const Field& field, const std::string& what) {
   }
 }
 
+void addWarning(FaultList& faults, const Field& field, const std::string& what) {
+  faults.warn(field.place(), field.pointer, what);
+}
+
 std::string described(const JsonValue& value) {
   struct {
     std::string operator()(std::nullptr_t) const { return "null"; }
@@ -197,11 +201,29 @@ ObjectReader::ObjectReader(const Field& field, FaultList& faults)
 
 std::optional<Field> ObjectReader::find(const char* key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
-  if (object_ == nullptr) return std::nullopt;
-  for (const JsonMember& member : *object_) {
-    if (member.key == key) return Field{&member.value, pointerTo(field_.pointer, member.key)};
-  }
-  return std::nullopt;
+  const JsonMember* member = memberOf(key);
+  return member == nullptr ? std::nullopt : std::optional(Field{&member->value, pointerTo(field_.pointer, key)});
+}
+
+const JsonMember* ObjectReader::memberOf(const std::string& key) const {
+  if (object_ == nullptr) return nullptr;
+  const auto found =
+      std::find_if(object_->begin(), object_->end(), [&key](const JsonMember& member) { return member.key == key; });
+  return found == object_->end() ? nullptr : &*found;
+}
+
+std::string ObjectReader::keysFound(const std::vector<const char*>& keys) {
+  std::vector<std::string> found;
+  for (const char* key : keys)
+    if (find(key)) found.push_back(inQuotes(key));
+  return found.empty() ? "none of its keys" : fmt::format("{}", fmt::join(found, " and "));
+}
+
+void ObjectReader::refuse(const char* key, const std::string& why) {
+  const JsonMember* member = memberOf(key);
+  if (member == nullptr) return;
+  refused_.emplace_back(key);
+  faults_.add(member->place, pointerTo(field_.pointer, key), why);
 }
 
 std::optional<Field> ObjectReader::require(const char* key) {
@@ -277,7 +299,10 @@ std::size_t ObjectReader::choiceIndex(const Field& field, const std::vector<std:
 void ObjectReader::rejectUnknownKeys() {
   if (object_ == nullptr) return;
   for (const JsonMember& member : *object_) {
-    if (std::find(known_.begin(), known_.end(), member.key) != known_.end()) continue;
+    const auto isAmong = [&member](const std::vector<std::string>& keys) {
+      return std::find(keys.begin(), keys.end(), member.key) != keys.end();
+    };
+    if (isAmong(known_) || isAmong(refused_)) continue;
     if (faults_.isFull())
       faults_.add({}, "", "");
     else

@@ -26,6 +26,9 @@ struct Field {
 /// Adds a fault at the value of `field`.
 void addFault(FaultList& faults, const Field& field, const std::string& what);
 
+/// Adds a warning at the value of `field`.
+void addWarning(FaultList& faults, const Field& field, const std::string& what);
+
 /// "a string ("abc")": what a value is, for a message.
 std::string described(const JsonValue& value);
 
@@ -60,6 +63,12 @@ class ObjectReader {
   /// Adds a fault of the object: it has none of `keys`, of which it needs one.
   void addMissing(std::vector<std::string> keys, const std::string& what);
 
+  /// Adds a fault if the object has a key that others of its kind may have, and it may not; `why` says so.
+  void refuse(const char* key, const std::string& why);
+
+  /// Those of `keys` that the object has, for a message: "a" and "b"; "none of its keys".
+  std::string keysFound(const std::vector<const char*>& keys);
+
   double number(const char* key, const Range& range, const char* unit, double fallback);
   std::optional<double> optionalNumber(const char* key, const Range& range, const char* unit);
   int integer(const char* key, int least, int most, int fallback);
@@ -82,6 +91,7 @@ class ObjectReader {
   FaultList& faults() const { return faults_; }
 
  private:
+  const JsonMember* memberOf(const std::string& key) const;
   std::size_t choiceIndex(const Field& field, const std::vector<std::string>& words);
   void rejectUnknown(const JsonMember& member);
 
@@ -93,7 +103,7 @@ class ObjectReader {
   Field field_;
   const JsonValue::Object* object_;  // null if the value is no object
   FaultList& faults_;
-  std::vector<std::string> known_;
+  std::vector<std::string> known_, refused_;
   std::vector<Missing> missing_;
 };
 

@@ -54,7 +54,6 @@ struct SceneDraft {
   std::vector<std::size_t> draftOfBody;  // for each of Scene::bodies
   std::vector<LinkDraft> links;
   std::map<std::string, int> materialIndex, bodyIndex;  // by name
-  std::vector<std::string> warnings;
 };
 
 /// Body or material with the name that `field` holds; a name that nothing has is a fault that says which `noun` it

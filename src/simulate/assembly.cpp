@@ -204,7 +204,7 @@ void satisfyConstraints(const Scene& scene, Assembly& assembly) {
   if (!solver.hasConstraints()) return;
   const VectorX before = assembly.state;
   solver.factorize(before);
-  const double violation = solver.largestRate(before);
+  const ConstraintRate violation = solver.largestRate(before);
   // Spins that a scene gives are kept where velocities of the centres of mass can follow them.
   std::vector<RigidBody> nonRotating = mechanism.bodies;
   for (RigidBody& body : nonRotating) body.inverseInertia.setZero();
@@ -212,11 +212,12 @@ void satisfyConstraints(const Scene& scene, Assembly& assembly) {
   linear.factorize(before);
   linear.constrainVelocities(assembly.state);
   solver.constrainVelocities(assembly.state);
-  if (violation > kVelocityRounding)
+  if (violation.rate > kVelocityRounding)
     assembly.warnings.push_back(fmt::format(
-        "{}: the start velocities would stretch or shorten rods or pull joints apart by up to {:.3g} m/s; they were "
-        "changed by up to {:.3g} to fit",
-        scene.path, violation, (assembly.state - before).cwiseAbs().maxCoeff()));
+        "{}: the start velocities would stretch or shorten rods or pull joints apart, most of all {} with {:.3g} m/s; "
+        "they were changed by up to {:.3g} to fit",
+        scene.path, assembly.names.constraints[violation.block], violation.rate,
+        (assembly.state - before).cwiseAbs().maxCoeff()));
 }
 
 /// Colliders of the bodies that may touch.

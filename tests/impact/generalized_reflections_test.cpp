@@ -339,7 +339,7 @@ class Heap {
   }
 
   /// How fast the rod's length changes, in m/s.
-  double rodRate() const { return solver.largestRate(state); }
+  double rodRate() const { return solver.largestRate(state).rate; }
 
   Mechanism mechanism;
   VectorX state;

@@ -45,8 +45,11 @@ INSTANTIATE_TEST_SUITE_P(OfTheTable, Fault, testing::ValuesIn(casesThatAre(false
 
 class ValidScene : public testing::TestWithParam<SceneCase> {};
 
-TEST_P(ValidScene, IsAccepted) {
-  EXPECT_NO_THROW(parse(GetParam().text)) << errorOf(GetParam().text).what();
+TEST_P(ValidScene, IsAcceptedAndWarnsWhereItShould) {
+  LoadedScene loaded;
+  ASSERT_NO_THROW(loaded = parse(GetParam().text)) << errorOf(GetParam().text).what();
+  if (GetParam().warning.empty()) return;
+  EXPECT_THAT(loaded.warnings, testing::ElementsAre(HasSubstr(GetParam().warning)));
 }
 
 INSTANTIATE_TEST_SUITE_P(OfTheTable, ValidScene, testing::ValuesIn(casesThatAre(true)));

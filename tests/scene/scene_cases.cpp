@@ -39,6 +39,8 @@ SceneCase readCase(const Lines& lines, const std::map<std::string, std::string>&
       result.pointer = value;
     } else if (key == "says") {
       result.words.push_back(value);
+    } else if (key == "warns") {
+      result.warning = value;
     } else if (key == "valid") {
       result.isValid = true;
     } else if (key != "beyond schema") {

@@ -11,6 +11,7 @@ struct SceneCase {
   std::string pointer;
   std::vector<std::string> words;
   bool isValid = false;
+  std::string warning;  // words of it; empty if nothing is asked of warnings
 };
 
 /// All entries. `path` is that of the file.

@@ -128,7 +128,7 @@ TEST(GroupProblem, HasTheResponseOfConstraintsWithManyContacts) {
   at.problem.apply(at.problem.solve(at.group, at.posed(), at.faults), at.state());
   EXPECT_THAT(at.faults, IsEmpty());
   EXPECT_LT(linearVelocity(at.state(), 0).norm(), 1e-14);
-  EXPECT_LT(at.problem.constraints().largestRate(at.state()), 1e-14);
+  EXPECT_LT(at.problem.constraints().largestRate(at.state()).rate, 1e-14);
   for (const Contact& contact : at.group.contacts) EXPECT_GE(openingSpeed(contact, at.state()), -1e-8);
   EXPECT_LT(at.problem.mobility(0), 0.9);
 }
