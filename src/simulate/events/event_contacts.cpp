@@ -55,7 +55,11 @@ bool EventContacts::noteUnboundedForces() {
 void EventContacts::noteShortMomentArms(double momentArm) {
   if (active_.empty() || !solver_.hasConstraints()) return;
   solver_.factorize(island_.state);
-  active_.noteShortMomentArms(findTouching(island_, solver_, tolerances_, {}), solver_, momentArm);
+  std::vector<Contact> touching = findTouching(island_, solver_, tolerances_, {});
+  // What still closes, as the edge of a lid beside its hinge does before the lid lands, has no lasting contact.
+  const double still = tolerances_.minOpeningSpeed(tolerances_.scales.size);
+  std::erase_if(touching, [&](const Contact& contact) { return openingSpeed(contact, island_.state) < -still; });
+  active_.noteShortMomentArms(touching, solver_, momentArm);
 }
 
 /// An end of a cylinder that strikes flat while it tips, or tips by that, strikes by one point of its rim after

@@ -242,12 +242,7 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   Event event = findFirstEvent();
   const double whole = step.timeStep, latest = event.latest * whole;
   if (event.any() && mayEndAnywhere()) {
-    cutStep(event.impact  ? event.impact->fraction
-            : event.rope  ? event.rope->fraction
-            : event.motor ? event.motor->fraction
-                          : event.contact->fraction,
-            step);
-    place(island_.assembly.mechanism.driven, step.time + step.timeStep, step.state);
+    cutAtEvent(event);
   } else if (event.impact) {
     if (!stopAtImpact(*event.impact)) event.impact.reset();
   } else if (event.rope) {
@@ -276,17 +271,49 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   return event;
 }
 
+/// Cuts the step on its interpolant.
+void EventMotion::cutAtEvent(Event& event) {
+  Step& step = island_.step;
+  double fraction = event.impact  ? event.impact->fraction
+                    : event.rope  ? event.rope->fraction
+                    : event.motor ? event.motor->fraction
+                                  : event.contact->fraction;
+  if (event.impact) {
+    const std::optional<double> closed = fractionOfImpact(*event.impact);
+    if (closed)
+      fraction = *closed;
+    else
+      event.impact.reset();
+  }
+  cutStep(fraction, step);
+  place(island_.assembly.mechanism.driven, step.time + step.timeStep, step.state);
+}
+
+/// Where, on the interpolant, the gap of an impact closes once the state is projected: one Newton step from where it
+/// closes before that. Empty if the gap is still open there.
+std::optional<double> EventMotion::fractionOfImpact(const ImpactTime& impact) {
+  const double fraction = impact.fraction, tolerance = tolerances_.closedGap;
+  if (contacts_.active().empty() && !solver_.hasConstraints()) return fraction;
+  Step& step = island_.step;
+  const auto gapAt = [&](double at) {
+    interpolate(step, at, step.work);
+    return projectedGap(impact, step.work);
+  };
+  const double left = gapAt(fraction);
+  if (std::abs(left) <= tolerance) return fraction;
+  const double closed = gapAt((1 - kSlopeRatio) * fraction) - left;
+  const double correction = closed > 0 ? left * kSlopeRatio * fraction / closed : 0;  // else the gap is rounding
+  if (std::abs(correction) <= kShortCorrection * fraction && std::abs(gapAt(fraction + correction)) <= tolerance)
+    return fraction + correction;
+  return left > tolerance ? std::nullopt : std::optional(fraction);
+}
+
 /// Ends the step where a gap closes. The gap s that the interpolant's error leaves is taken out by one Newton step
 /// along the end derivative: theta = -s / s'. The gap is that of the projected state, as contacts that close at one
 /// instant are told apart by what projection would leave of it. False if the gap is still open at the instant of the
 /// interpolant: no later impact has been searched for, so the step ends there without an event.
 bool EventMotion::stopAtImpact(const ImpactTime& impact) {
-  const TouchingFeatures touching = contacts_.touching();
-  const auto gap = [&](const VectorX& state) {
-    projected_ = state;
-    project(projected_);
-    return island_.search.margin(impact, touching, projected_);
-  };
+  const auto gap = [&](const VectorX& state) { return projectedGap(impact, state); };
   Step& step = island_.step;
   const double length = impact.fraction * step.timeStep;
   keepStartDerivative(step);
@@ -303,6 +330,13 @@ bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   std::swap(step.state, step.work);
   step.timeStep += correction;
   return true;
+}
+
+/// m: how far an impact is from happening in a state, once that is projected.
+double EventMotion::projectedGap(const ImpactTime& impact, const VectorX& state) {
+  projected_ = state;
+  project(projected_);
+  return island_.search.margin(impact, contacts_.touching(), projected_);
 }
 
 /// Projects a state onto the manifold of active contacts and constraints.

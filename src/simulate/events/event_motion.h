@@ -75,6 +75,9 @@ class EventMotion {
   Event stopAtFirstEvent();
   void resolveMotors(const std::optional<MotorChange>& change);
   bool stopAtImpact(const ImpactTime& impact);
+  void cutAtEvent(Event& event);
+  std::optional<double> fractionOfImpact(const ImpactTime& impact);
+  double projectedGap(const ImpactTime& impact, const VectorX& state);
   void project(VectorX& state);
   void projectState();
   void requireConstraintsKept();
