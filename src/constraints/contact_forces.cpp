@@ -262,6 +262,7 @@ void ContactSolver::solve(Group& group, const Constrain& constrain, const Asked&
       for (std::size_t i = 0; i < rows; ++i) multipliers[i] = -(multipliers[i] + asked(from.rows.block, i));
     });
   }
+  group.asked = VectorX::Map(multipliers_.data(), group.rows).cwiseAbs().maxCoeff();
   group.solver.solve(multipliers_.data());
   for (const int contact : group.members.contacts) {
     const ActiveBlock& from = blocks_[index(contact)];
@@ -301,6 +302,22 @@ void ContactSolver::takeForces(const Group& group, VectorX& derivative) {
     for (int k = 0; k + 1 < block.rows; ++k) force.tangential += multipliers[k] * block.linear.row(k).transpose();
   }
   if (group.constraints) group.constraints->putMultipliers(bilateralMultipliers_);
+  if (group.solver.rank() < group.rows) takeContradictions(group, derivative);
+}
+
+/// Notes what a group's rows leave of the accelerations that they forbid.
+void ContactSolver::takeContradictions(const Group& group, const VectorX& derivative) {
+  for (const int i : group.members.contacts) {
+    const ConstraintBlock& block = blocks_[index(i)].rows.block;
+    ContactForce& force = forces_[index(i)];
+    force.left = 0, force.asked = group.asked;
+    withContactRows(block.rows, [&](auto rows) {
+      std::array<double, rows> rates;
+      findRates<rows>(block, derivative, rates.data());
+      for (std::size_t k = 0; k < rows; ++k)
+        force.left = std::max(force.left, std::abs(rates[k] + block.velocityProduct[k]));
+    });
+  }
 }
 
 void ContactSolver::constrainVelocities(VectorX& state) {

@@ -20,6 +20,9 @@ struct ContactForce {
   Vec3 point = Vec3::Zero();               // m, world
   Vec3 tangentialVelocity = Vec3::Zero();  // m/s, of A relative to B, world
   Vec3 slidingDirection = Vec3::Zero();    // unit, world; zero unless sliding: friction on A is against it
+  // m/s^2, where rows depend on each other: the acceleration against a row that they leave, as they contradict each
+  // other, and the largest that those of the group were to take out
+  double left = 0, asked = 0;
 };
 
 /// Forces of active contacts, of bodies whose constraints respond to them: the rows of a group of contacts have the
@@ -76,6 +79,7 @@ class ContactSolver {
     bool slides = false;
     bool isPlaced = false;  // by project, as well as it can be
     double error = 0;       // m or rad, that project found last
+    double asked = 0;       // the largest rate that was to be taken out last
     MinimumNormSolver solver = {};
   };
   /// How a contact or a constraint joined two bodies when groups were found: `kind` is the motion of a contact, or the
@@ -106,6 +110,7 @@ class ContactSolver {
   template <class Constrain, class Asked>
   void solve(Group& group, const Constrain& constrain, const Asked& asked, VectorX& motion);
   void takeForces(const Group& group, VectorX& derivative);
+  void takeContradictions(const Group& group, const VectorX& derivative);
 
   void constrainGroupVelocities(VectorX& state);
   void placeGaps(const VectorX& state, const std::vector<char>& resting);

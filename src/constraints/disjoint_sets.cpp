@@ -3,16 +3,22 @@
 #include <algorithm>
 #include <numeric>
 
-#include "dynamics/rigid_body.h"
-
 namespace cradle {
 
 DisjointSets::DisjointSets(std::size_t bodies) : parents_(bodies) {
   std::iota(parents_.begin(), parents_.end(), 0);
 }
 
+DisjointSets::DisjointSets(const std::vector<RigidBody>& bodies) : DisjointSets(bodies.size()) {
+  for (const RigidBody& body : bodies) isDriven_.push_back(body.isDriven());
+}
+
+bool DisjointSets::joinsNothing(int body) const {
+  return body == kFixed || (!isDriven_.empty() && isDriven_[static_cast<std::size_t>(body)]);
+}
+
 void DisjointSets::join(int bodyA, int bodyB) {
-  if (bodyA == kFixed || bodyB == kFixed) return;
+  if (joinsNothing(bodyA) || joinsNothing(bodyB)) return;
   const auto [first, last] = std::minmax({halvePath(bodyA), halvePath(bodyB)});
   parents_[static_cast<std::size_t>(last)] = first;
 }

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "dynamics/rigid_body.h"
+
 namespace cradle {
 
 /// Disjoint sets of bodies (union-find: R. E. Tarjan, 1975), joined two by two. Fixed bodies join nothing.
@@ -9,19 +11,27 @@ class DisjointSets {
  public:
   explicit DisjointSets(std::size_t bodies);
 
+  /// Driven bodies join nothing either: no impulse at one of them reaches another.
+  explicit DisjointSets(const std::vector<RigidBody>& bodies);
+
   /// Either may be kFixed.
   void join(int bodyA, int bodyB);
 
   /// The first body of a body's set: the same for all that are joined. O(1) after flatten(), else O(bodies) at worst.
   int islandOf(int body) const;
 
+  /// That of the first of two that is neither fixed nor driven; one must be such.
+  int islandOf(int bodyA, int bodyB) const { return islandOf(joinsNothing(bodyA) ? bodyB : bodyA); }
+
   /// Makes islandOf fast until the next join. O(bodies).
   void flatten();
 
  private:
   int halvePath(int body);
+  bool joinsNothing(int body) const;
 
-  std::vector<int> parents_;  // each at most its own index
+  std::vector<int> parents_;    // each at most its own index
+  std::vector<char> isDriven_;  // none, if empty
 };
 
 }  // namespace cradle

@@ -52,6 +52,19 @@ void bookNumerical(double constant, const Mechanism& mechanism, VectorX& state) 
   numericalEnergy(state) += constant - energyConstant(mechanism, state);
 }
 
+void bookProjection(const VectorX& before, const Mechanism& mechanism, VectorX& state) {
+  if (!mechanism.driven.empty() || !mechanism.motors.empty())
+    for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
+      if (mechanism.bodies[i].isDriven()) continue;
+      const auto body = static_cast<Eigen::Index>(i);
+      const Vec3 change = linearVelocity(state, body) - linearVelocity(before, body),
+                 turn = angularVelocity(state, body) - angularVelocity(before, body);
+      pushWork(state) += mechanism.bodies[i].mass * change.dot(linearVelocity(state, body)) +
+                         turn.dot(spinMomentum(mechanism.bodies[i], body, state));
+    }
+  bookNumerical(energyConstant(mechanism, before), mechanism, state);
+}
+
 void bookStep(const Mechanism& mechanism, Step& step) {
   bookNumerical(energyConstant(mechanism, step.startState), mechanism, step.state);
 }

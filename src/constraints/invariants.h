@@ -31,6 +31,11 @@ double energyConstant(const Mechanism& mechanism, const VectorX& state);
 /// laws have booked their part already.
 void bookNumerical(double constant, const Mechanism& mechanism, VectorX& state);
 
+/// The same for a projection that gives `before` the velocities that rows J ask for, J u + J_w w = b with the
+/// velocities u of others, w of driven bodies and b of motors. It changes u by M du = J^T mu; driven bodies and motors
+/// do the work mu . (b - J_w w) = mu . J u = du . M u by that, u that of `state`, however fast all move together.
+void bookProjection(const VectorX& before, const Mechanism& mechanism, VectorX& state);
+
 /// The same for an integrator's step: books its error at its end.
 void bookStep(const Mechanism& mechanism, Step& step);
 

@@ -34,7 +34,8 @@ constexpr double kLeavingUnit = 1e3 * EventTolerances::kEventFunction;
 constexpr double kJustFlat = 1 - 1e-6;  // a disc that lies down ends a little flatter than a row may follow
 
 constexpr std::array<Kind, 5> kKinds = {Kind::release, Kind::slip, Kind::stick, Kind::leave, Kind::redundant};
-constexpr std::size_t kOfPair = kKinds.size();  // of the event functions: what is left of the friction of a whole pair
+// Of the event functions: what is left of the friction of a whole pair, and of the agreement of rows.
+constexpr std::size_t kOfPair = kKinds.size(), kOfRows = kOfPair + 1;
 
 // Event functions whose parabola through three samples falls below this may fall below zero between them: it misses
 // the least of a cosine by some 1e-4 where samples are 1/32 of a period apart.
@@ -138,6 +139,13 @@ double ContactChanges::stickingLeft(std::size_t contact, const std::vector<Conta
   return limit > 0 ? (limit - tangential.norm()) / limit : INFINITY;
 }
 
+/// Below zero where rows contradict each other: no forces keep all contacts, however friction and loads may be.
+double ContactChanges::agreementOf(std::size_t contact) const {
+  const ContactForce& force = island_.equations.contactForces()[contact];
+  const double most = EventTolerances::kInfeasibleRatio * std::max(force.asked, mechanism().gravity.norm());
+  return force.left > most ? most / force.left - 1 : INFINITY;
+}
+
 void ContactChanges::evaluate(const std::vector<ContactRecord>& records, double fraction, const VectorX& state,
                               std::vector<EventFunctions>& values) {
   island_.equations.evaluate(timeAt(fraction), state, derivative_);
@@ -154,10 +162,11 @@ void ContactChanges::takeEvaluated(const std::vector<ContactRecord>& records, co
   for (std::size_t i = 0; i < records.size(); ++i) {
     const ContactMotion motion = mechanism().contacts[i].motion;
     const double limit = records[i].pair.material.staticFriction * forces[i].normal;
-    values[i] = {forces[i].normal / records[i].force, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
+    values[i] = {forces[i].normal / records[i].force, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
     if (!sphereOverMesh(island_.assembly.geometry, records[i].pair, state).mesh)
       values[i][3] = kLeavingUnit * std::max(-1.0, 1 - distanceFromNearest(i, records[i], state) / tolerances_.leaving);
     if (motion == ContactMotion::sticking) values[i][1] = (limit - forces[i].tangential.norm()) / records[i].force;
+    if (records[i].isRedundant) values[i][kOfRows] = agreementOf(i);
     if (motion == ContactMotion::sticking && records[i].isRedundant) values[i][kOfPair] = stickingLeft(i, records);
     if (motion == ContactMotion::sliding) values[i][2] = forces[i].tangentialVelocity.dot(slidingDirectionAt(i, state));
     if (motion == ContactMotion::sliding && records[i].isRedundant)
@@ -243,7 +252,8 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
                                                           double to) {
   std::optional<ContactChange> first;
   isInDoubt_.assign(records.size(), 0);
-  for (std::size_t i = 0; i < records.size(); ++i)
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (ahead_[i][kOfRows] < 0) isInDoubt_[i] = 1;
     for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
       double end = to, marginEnd = ahead_[i][kind];
       if (kKinds[kind] == Kind::leave && marginEnd >= -EventTolerances::kEventFunction)
@@ -264,6 +274,7 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
       change.fraction = locate(change, records, from, before_[i][kind], end, marginEnd);
       if (!first || change.fraction < first->fraction) first = change;
     }
+  }
   if (std::any_of(isInDoubt_.begin(), isInDoubt_.end(), [](char isInDoubt) { return isInDoubt != 0; })) {
     const double end = first ? first->fraction : to;
     if (const auto failure = firstInfeasible(records, from, end)) first = ContactChange{Kind::redundant, *failure, 0};

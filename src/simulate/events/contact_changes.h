@@ -60,9 +60,9 @@ class ContactChanges {
 
  private:
   /// Of a contact, in the order of the kinds.
-  /// Behind them what is left of the friction of its whole pair, for contacts that stick and are redundant: of these,
-  /// single forces tell nothing.
-  using EventFunctions = std::array<double, 6>;
+  /// Behind them, for contacts that are redundant, of which single forces tell nothing: what is left of the friction of
+  /// its whole pair, if it sticks; and how far rows are from contradicting each other.
+  using EventFunctions = std::array<double, 7>;
 
   Mechanism& mechanism() const { return island_.assembly.mechanism; }
   Vec3 slidingDirectionAt(std::size_t contact, const VectorX& state) const;
@@ -76,6 +76,7 @@ class ContactChanges {
                 std::vector<EventFunctions>& values);
   void takeEvaluated(const std::vector<ContactRecord>& records, const VectorX& state,
                      std::vector<EventFunctions>& values);
+  double agreementOf(std::size_t contact) const;
   double stickingLeft(std::size_t contact, const std::vector<ContactRecord>& records) const;
   std::optional<ContactChange> firstInDip(const std::vector<ContactRecord>& records, double earlier, double from,
                                           double to);

@@ -45,16 +45,13 @@ std::vector<ContactRecord> recordsOf(const ClassificationInput& input, const Isl
 }
 
 std::vector<RecordGroup> groupsOf(const std::vector<ContactRecord>& records, const Mechanism& mechanism) {
-  const auto moved = [&](int body) {  // by forces
-    return body == kFixed || mechanism.bodies[static_cast<std::size_t>(body)].isDriven() ? kFixed : body;
-  };
-  DisjointSets sets(mechanism.bodies.size());
-  for (const ContactRecord& record : records) sets.join(moved(record.contact.bodyA), moved(record.contact.bodyB));
+  DisjointSets sets(mechanism.bodies);
+  for (const ContactRecord& record : records) sets.join(record.contact.bodyA, record.contact.bodyB);
   for (const Constraint& constraint : mechanism.constraints)
-    sets.join(moved(constraint.anchorA.body), moved(constraint.anchorB.body));
+    sets.join(constraint.anchorA.body, constraint.anchorB.body);
   std::vector<RecordGroup> groups(mechanism.bodies.size());
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const int first = sets.islandOf(std::max(moved(records[i].contact.bodyA), moved(records[i].contact.bodyB)));
+    const int first = sets.islandOf(records[i].contact.bodyA, records[i].contact.bodyB);
     groups[static_cast<std::size_t>(first)].push_back(i);
   }
   std::erase_if(groups, [](const RecordGroup& group) { return group.empty(); });

@@ -78,9 +78,9 @@ void EventContacts::noteTippingImpacts(const std::vector<Contact>& met, const Ve
 /// stick. Contacts that cannot last, as two corners that meet, have no rows for that.
 void EventContacts::project() {
   if (active_.empty() || !active_.fallbackReason().empty()) return;
-  const double constant = energyConstant(island_.assembly.mechanism, island_.state);
+  const VectorX before = island_.state;
   island_.equations.project(island_.state);
-  bookNumerical(constant, island_.assembly.mechanism, island_.state);
+  bookProjection(before, island_.assembly.mechanism, island_.state);
 }
 
 void EventContacts::recordRests(const std::vector<char>& restedBefore, double zenoTime) {

@@ -132,7 +132,7 @@ void EventImpacts::useKnownGaps(const std::vector<Contact>& near, SequenceLimits
 
 /// Impact islands: bodies that an impact at one of them may move.
 DisjointSets EventImpacts::findImpactIslands(const std::vector<Contact>& contacts) const {
-  DisjointSets islands(island_.assembly.mechanism.bodies.size());
+  DisjointSets islands(island_.assembly.mechanism.bodies);
   for (const Contact& contact : contacts) islands.join(contact.bodyA, contact.bodyB);
   for (const Constraint& constraint : island_.assembly.mechanism.constraints)
     islands.join(constraint.anchorA.body, constraint.anchorB.body);
@@ -150,7 +150,7 @@ double EventImpacts::resolveNext(const ImpactSequence& sequence, double still, s
   std::vector<char> isStruck(island_.assembly.mechanism.bodies.size(), 0);
   for (const Contact& contact : members)
     if (openingSpeed(contact, island_.state) < -still)
-      isStruck[static_cast<std::size_t>(islands.islandOf(contact.movingBody()))] = 1;
+      isStruck[static_cast<std::size_t>(islands.islandOf(contact.bodyA, contact.bodyB))] = 1;
   double zenoTime = 0;
   for (std::size_t island = 0; island < isStruck.size(); ++island)
     if (isStruck[island])
@@ -164,7 +164,7 @@ double EventImpacts::resolveNext(const ImpactSequence& sequence, double still, s
 /// The impact of one impact island. Sets the impulses of its ropes. Returns the Zeno time (s).
 double EventImpacts::resolveIsland(const DisjointSets& islands, int island, const ImpactSequence& sequence,
                                    std::vector<ImpactContact>& ropes, std::vector<ContactImpulse>& impulses) {
-  const auto isIn = [&](const Contact& contact) { return islands.islandOf(contact.movingBody()) == island; };
+  const auto isIn = [&](const Contact& contact) { return islands.islandOf(contact.bodyA, contact.bodyB) == island; };
   std::vector<ImpactContact> impacts;
   std::vector<std::size_t> contacts;
   for (const std::size_t i : sequence.members()) {

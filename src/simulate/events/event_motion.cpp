@@ -357,7 +357,7 @@ void EventMotion::projectState() {
   bool isTouched = false;
   if (!contacts_.active().empty() || solver_.hasConstraints()) {
     isTouched = !isSame(state, island_.step.state);
-    bookNumerical(energyConstant(island_.assembly.mechanism, island_.step.state), island_.assembly.mechanism, state);
+    bookProjection(island_.step.state, island_.assembly.mechanism, state);
   }
   if (solver_.hasConstraints()) requireConstraintsKept();
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)

@@ -34,7 +34,7 @@ std::vector<StepGroup> ContactSet::findGroups() const {
   const auto isHeld = [this](int body) {  // no force moves it
     return body == kFixed || assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven();
   };
-  DisjointSets sets(assembly_.mechanism.bodies.size());
+  DisjointSets sets(assembly_.mechanism.bodies);
   std::vector<char> isConstrained(assembly_.mechanism.bodies.size(), 0), isConstrainedToFixed = isConstrained;
   for (const Constraint& constraint : assembly_.mechanism.constraints) {
     const int bodyA = constraint.anchorA.body, bodyB = constraint.anchorB.body;
@@ -49,7 +49,7 @@ std::vector<StepGroup> ContactSet::findGroups() const {
   std::map<int, StepGroup> groups;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& contact = contacts_[i];
-    StepGroup& group = groups[sets.islandOf(contact.movingBody())];
+    StepGroup& group = groups[sets.islandOf(contact.bodyA, contact.bodyB)];
     group.members.push_back(i);
     group.contacts.push_back(contact);
     if (!isHeld(contact.bodyA) && !isHeld(contact.bodyB)) continue;

@@ -262,7 +262,7 @@ void StepContacts::resolveImpactIslands(double time, const VectorX& before, Vect
 
 /// Impact islands: bodies that touch each other or are joined.
 DisjointSets StepContacts::findImpactIslands() const {
-  DisjointSets islands(assembly_.mechanism.bodies.size());
+  DisjointSets islands(assembly_.mechanism.bodies);
   for (const Contact& contact : touching_) islands.join(contact.bodyA, contact.bodyB);
   for (const Constraint& constraint : assembly_.mechanism.constraints)
     islands.join(constraint.anchorA.body, constraint.anchorB.body);
@@ -279,7 +279,7 @@ std::vector<std::vector<ImpactContact>> StepContacts::findImpacts(const VectorX&
     const double gained = closing + contact.normal.dot(relativeVelocity(contact, state, before));
     const double restSpeed = std::max(StepTolerances::kRestSteps * std::max(0.0, gained / stepPart_),
                                       tolerances().minImpactSpeed(timeStep_));
-    const auto island = static_cast<std::size_t>(islands.islandOf(contact.movingBody()));
+    const auto island = static_cast<std::size_t>(islands.islandOf(contact.bodyA, contact.bodyB));
     impacts[island].push_back({contact, assembly_.geometry.pairs[contact.pair].material, restSpeed, Vec3::Zero()});
     if (closing > tolerances().minClosingSpeed(timeStep_)) isStruck[island] = 1;
   }

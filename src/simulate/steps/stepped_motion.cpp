@@ -152,7 +152,7 @@ bool SteppedMotion::solveContacts() {
   state = island_.step.state;
   if (solver_.hasConstraints()) {
     solver_.project(state);
-    bookNumerical(energyConstant(mechanism, island_.step.state), mechanism, state);
+    bookProjection(island_.step.state, mechanism, state);
     if (solver_.leaveNoMotion(state, startConstraintError_))
       guard_.failAtConstraints(state, island_.step.time, solver_.largestError());
   }
