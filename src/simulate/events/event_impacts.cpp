@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "constraints/invariants.h"
 #include "impact/contact_impulse.h"
 #include "impact/frictional_impact.h"
+#include "impact/frictional_tolerances.h"
 #include "impact/generalized_reflections.h"
 #include "impact/impact_energy.h"
 
@@ -14,6 +16,10 @@ namespace {
 
 // Of the fastest contact before an impact: a solved one leaves no contact that closes as fast. Rounding leaves 1e-12.
 constexpr double kMinClosingRatio = 0.01;
+
+// Of contacts that others close: a box that is pushed, or falls on what stands, needs one or two. All are solved at
+// once where more would be needed, as in a stack.
+constexpr int kMaxClosingRounds = 3;
 
 /// m/s: of the faster of the two bodies' centres.
 double contactSpeed(const Contact& contact, const VectorX& state) {
@@ -154,7 +160,7 @@ double EventImpacts::resolveNext(const ImpactSequence& sequence, double still, s
   double zenoTime = 0;
   for (std::size_t island = 0; island < isStruck.size(); ++island)
     if (isStruck[island])
-      zenoTime = std::max(zenoTime, resolveIsland(islands, static_cast<int>(island), sequence, ropes, impulses));
+      zenoTime = std::max(zenoTime, resolveIsland(islands, static_cast<int>(island), sequence, still, ropes, impulses));
   ropes_.endImpact(island_.time, ropes, island_.state);
   if (!ropes.empty() && constraints_.hasConstraints()) constraints_.factorize(island_.state);
   for (const ImpactContact& rope : ropes) rest_.wakeStruck(rope.contact);
@@ -163,7 +169,8 @@ double EventImpacts::resolveNext(const ImpactSequence& sequence, double still, s
 
 /// The impact of one impact island. Sets the impulses of its ropes. Returns the Zeno time (s).
 double EventImpacts::resolveIsland(const DisjointSets& islands, int island, const ImpactSequence& sequence,
-                                   std::vector<ImpactContact>& ropes, std::vector<ContactImpulse>& impulses) {
+                                   double still, std::vector<ImpactContact>& ropes,
+                                   std::vector<ContactImpulse>& impulses) {
   const auto isIn = [&](const Contact& contact) { return islands.islandOf(contact.bodyA, contact.bodyB) == island; };
   std::vector<ImpactContact> impacts;
   std::vector<std::size_t> contacts;
@@ -178,7 +185,7 @@ double EventImpacts::resolveIsland(const DisjointSets& islands, int island, cons
   for (const ImpactContact& rope : ropes)
     if (isIn(rope.contact)) impacts.push_back(rope);
   const VectorX approach = island_.state;
-  const double zenoTime = resolveImpact(impacts);
+  const double zenoTime = resolveImpact(impacts, still);
   requireRoom(approach, {impacts.begin(), impacts.begin() + std::ssize(contacts)});
   for (std::size_t i = 0; i < contacts.size(); ++i)
     addImpulse(contacts[i], impacts[i].contact.normal.dot(impacts[i].impulse), impulses);
@@ -189,7 +196,7 @@ double EventImpacts::resolveIsland(const DisjointSets& islands, int island, cons
 }
 
 /// One impact, without the rebounds that end a Zeno sequence. Returns the Zeno time (s).
-double EventImpacts::resolveImpact(std::vector<ImpactContact>& impacts) {
+double EventImpacts::resolveImpact(std::vector<ImpactContact>& impacts, double still) {
   VectorX& state = island_.state;
   const VectorX approach = state;
   const ImpulseResponse response(island_.assembly.mechanism.bodies, constraints_);
@@ -198,10 +205,10 @@ double EventImpacts::resolveImpact(std::vector<ImpactContact>& impacts) {
   });
   ImpactFaults faults;
   const auto solve = [&] {
-    if (hasFriction)
-      faults = resolveFrictionalImpact(impacts, response, state);
-    else
+    if (!hasFriction)
       resolveReflections(impacts, response, state);
+    else if (!resolveByThoseThatClose(impacts, response, still, faults))
+      faults = resolveFrictionalImpact(impacts, response, state);
   };
   solve();
   const double zenoTime = endZenoSequence(approach, impacts);
@@ -214,6 +221,38 @@ double EventImpacts::resolveImpact(std::vector<ImpactContact>& impacts) {
   bookImpact(impacts, island_.assembly.mechanism.bodies, constraints_, approach, state);
   bookNumerical(energyConstant(island_.assembly.mechanism, approach), island_.assembly.mechanism, state);
   return zenoTime;
+}
+
+/// With friction, impulses of contacts that do not close by themselves, as those under a box that is pushed, may have
+/// many solutions. They take no part if the impact of those that close, and of those that these close in turn, leaves
+/// them open or as they are. True if that solves the impact; else the island's state stays as it is.
+bool EventImpacts::resolveByThoseThatClose(std::vector<ImpactContact>& impacts, const ImpulseResponse& response,
+                                           double still, ImpactFaults& faults) {
+  const VectorX approach = island_.state;
+  double closing = still, fastest = 0;  // m/s
+  for (const ImpactContact& impact : impacts) fastest = std::max(fastest, -openingSpeed(impact.contact, approach));
+  std::vector<std::size_t> members, others(impacts.size());
+  std::iota(others.begin(), others.end(), std::size_t(0));
+  for (int round = 0; round < kMaxClosingRounds; ++round) {
+    const std::size_t before = members.size();
+    std::erase_if(others, [&](std::size_t i) {
+      const bool closes = openingSpeed(impacts[i].contact, island_.state) < -closing;
+      if (closes) members.push_back(i);
+      return closes;
+    });
+    if (members.size() == before) return true;
+    for (ImpactContact& impact : impacts) impact.impulse.setZero();
+    island_.state = approach;
+    if (others.empty()) return false;
+    closing = std::max(still, FrictionalImpactTolerances(fastest).sliding);
+    std::vector<ImpactContact> struck;
+    for (const std::size_t i : members) struck.push_back(impacts[i]);
+    faults = resolveFrictionalImpact(struck, response, island_.state);
+    for (std::size_t k = 0; k < members.size(); ++k) impacts[members[k]].impulse = struck[k].impulse;
+  }
+  for (ImpactContact& impact : impacts) impact.impulse.setZero();
+  island_.state = approach;
+  return false;
 }
 
 /// `impacts` are those of contacts alone. Driven bodies that come together over what they touch leave it no velocity

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "constraints/disjoint_sets.h"
+#include "impact/frictional_impact.h"
 #include "impact/pairwise.h"
 #include "simulate/events/coming_to_rest.h"
 #include "simulate/events/event_tolerances.h"
@@ -50,9 +51,11 @@ class EventImpacts {
   SequenceLimits limitsOf(const std::vector<Contact>& near, double stillSpeed);
   DisjointSets findImpactIslands(const std::vector<Contact>& contacts) const;
   double resolveNext(const ImpactSequence& sequence, double still, std::vector<ContactImpulse>& impulses);
-  double resolveIsland(const DisjointSets& islands, int island, const ImpactSequence& sequence,
+  double resolveIsland(const DisjointSets& islands, int island, const ImpactSequence& sequence, double still,
                        std::vector<ImpactContact>& ropes, std::vector<ContactImpulse>& impulses);
-  double resolveImpact(std::vector<ImpactContact>& impacts);
+  double resolveImpact(std::vector<ImpactContact>& impacts, double still);
+  bool resolveByThoseThatClose(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, double still,
+                               ImpactFaults& faults);
   void requireRoom(const VectorX& approach, const std::vector<ImpactContact>& impacts) const;
   double endZenoSequence(const VectorX& approach, std::vector<ImpactContact>& impacts);
 
