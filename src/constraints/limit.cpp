@@ -118,10 +118,18 @@ double slackOf(const JointLimit& limit, const RigidTransform& poseA, const Rigid
   return -limit.side * limit.unit() * excessOf(limit, block.value[0], turning);
 }
 
-double turnedOf(const JointLimit& limit, const VectorX& state) {
+double turningTo(const JointLimit& limit, double time, const VectorX& state) {
   CoordinateRow row;
   findRow(limit, state, row);
-  return limit.bound.value + excessOf(limit, row.block.value[0], 0);
+  return time * (limit.rate + rateOf(row.block, 0, state)) / 2;
+}
+
+void followTurn(JointLimit& limit, double time, const VectorX& state) {
+  CoordinateRow row;
+  findRow(limit, state, row);
+  const double rate = rateOf(row.block, 0, state);
+  limit.turned = limit.bound.value + excessOf(limit, row.block.value[0], time * (limit.rate + rate) / 2);
+  limit.rate = rate;
 }
 
 ConstraintBlock lengtheningRow(const Limit& limit, const LimitMotion& motion) {

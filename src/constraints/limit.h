@@ -21,7 +21,8 @@ struct JointLimit {
   double side = 1;         // 1: the most, -1: the least
   double size = 1;         // m, of the bodies: what is measured against it, and the radius at which a hinge's stop acts
   double restitution = 0;  // 0..1, of the impulse when it is reached
-  double turned = 0;       // rad: the coordinate of a hinge when it was followed last, whole turns counted
+  // Of a hinge when it was followed last: its coordinate (rad), whole turns counted, and the rate of that (rad/s).
+  double turned = 0, rate = 0;
 
   double unit() const { return bound.turns ? size : 1; }  // m of slack a unit of the coordinate
 };
@@ -46,12 +47,16 @@ struct LimitMotion {
 };
 LimitMotion motionOf(const Limit& limit, const VectorX& state);
 
-/// The slack (m) of a stop for the poses of its bodies' centres of mass, of those within half a turn of where it was
-/// followed last and `turning` (rad) on.
+/// The slack (m) of a stop for the poses of its bodies' centres of mass: of a hinge that of the turns that is nearest
+/// to where it was followed last and `turning` (rad) on.
 double slackOf(const JointLimit& limit, const RigidTransform& poseA, const RigidTransform& poseB, double turning);
 
-/// The coordinate of a hinge's stop (rad), whole turns counted, that is nearest to where it was followed last.
-double turnedOf(const JointLimit& limit, const VectorX& state);
+/// What a hinge turns by (rad) from where it was followed last until it comes to `state` in `time` (s), if its rate
+/// changes evenly meanwhile.
+double turningTo(const JointLimit& limit, double time, const VectorX& state);
+
+/// Follows a hinge to `state`, to which it has come in `time` (s), within half a turn of what `turningTo` says.
+void followTurn(JointLimit& limit, double time, const VectorX& state);
 
 /// The one row of the lengthening; its multiplier pushes A away from the limit if it is < 0.
 ConstraintBlock lengtheningRow(const Limit& limit, const LimitMotion& motion);

@@ -43,15 +43,16 @@ double slackAt(const RopeLimit& rope, const Step& step, double fraction, double)
   return rope.maxLength - (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
 }
 
-/// `turning` is what a hinge would turn by in the step with the rate of its start (rad).
+/// `turning` is what a hinge turns by in the whole step (rad), if its rate changes evenly.
 double slackAt(const JointLimit& stop, const Step& step, double fraction, double turning) {
+  const double withRateOfStart = stop.rate * step.timeStep;
   return slackOf(stop, poseAt(step, stop.anchorA.body, fraction), poseAt(step, stop.anchorB.body, fraction),
-                 fraction * turning);
+                 fraction * (withRateOfStart + fraction * (turning - withRateOfStart)));
 }
 
 double turningOf(const Limit& limit, const Step& step) {
   const auto* stop = std::get_if<JointLimit>(&limit);
-  return stop ? stop->side * motionOf(limit, step.startState).lengthening / stop->unit() * step.timeStep : 0;
+  return stop && stop->bound.turns ? turningTo(*stop, step.timeStep, step.state) : 0;
 }
 
 /// Bounds on the slack's derivatives, with the step as the unit of time. Of two points at distance d, -d'' is at most
@@ -135,6 +136,7 @@ LimitEvents::LimitEvents(IslandState& island)
       isStretched_(assembly_.limits.size(), 0),
       tensionScales_(assembly_.limits.size()) {
   for (std::size_t i = 0; i < tensionScales_.size(); ++i) tensionScales_[i] = usualTension(i);
+  followTurns(0, assembly_.state);
 }
 
 /// kg: of the bodies at the limit's ends.
@@ -222,7 +224,12 @@ double LimitEvents::margin(const LimitChange& change, const VectorX& state) {
   if (isTaut(change.limit))
     return tension(change.limit, island_.step.time + island_.step.timeStep, state) / tensionScales_[change.limit];
   const Limit& limit = assembly_.limits[change.limit];
-  return (motionOf(limit, state).slackLength - change.threshold) / sizeOf(limit);
+  const auto* stop = std::get_if<JointLimit>(&limit);
+  const double slack = stop && stop->bound.turns
+                           ? slackOf(*stop, poseOf(state, stop->anchorA.body), poseOf(state, stop->anchorB.body),
+                                     turningTo(*stop, island_.step.timeStep, state))
+                           : motionOf(limit, state).slackLength;
+  return (slack - change.threshold) / sizeOf(limit);
 }
 
 /// Force (N) with which a taut limit pulls its ends together, or pushes back. Its row's multiplier pushes by multiplier
@@ -238,14 +245,15 @@ bool LimitEvents::rests(std::size_t limit) const {
   return island_.resting.isResting(a) || island_.resting.isResting(b);
 }
 
-/// Whole turns are counted from step to step.
-void LimitEvents::followTurns(const VectorX& state) {
+void LimitEvents::followTurns(double time, const VectorX& state) {
   for (Limit& limit : assembly_.limits)
-    if (auto* stop = std::get_if<JointLimit>(&limit); stop && stop->bound.turns) stop->turned = turnedOf(*stop, state);
+    if (auto* stop = std::get_if<JointLimit>(&limit); stop && stop->bound.turns)
+      followTurn(*stop, time - followedTime_, state);
+  followedTime_ = time;
 }
 
 bool LimitEvents::resolve(double time, VectorX& state) {
-  followTurns(state);
+  followTurns(time, state);
   // Limits that would have to push are released, even where others go taut; impacts may have shortened some.
   std::vector<char> isReleased(tautRow_.size(), 0);
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
@@ -258,7 +266,9 @@ bool LimitEvents::resolve(double time, VectorX& state) {
     if (!isTaut(i) && motionOf(assembly_.limits[i], state).slackLength > kSlackRatio * sizeOf(assembly_.limits[i]))
       loosen(time, i, state);
   const bool released = std::find(isReleased.begin(), isReleased.end(), 1) != isReleased.end();
-  return pullStretched(time, isReleased, state) || released;
+  const bool pulled = pullStretched(time, isReleased, state);
+  if (pulled) followTurns(time, state);  // they turn at other rates now
+  return pulled || released;
 }
 
 bool LimitEvents::pullStretched(double time, VectorX& state) {

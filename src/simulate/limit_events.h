@@ -34,6 +34,9 @@ class LimitEvents {
   /// greater of those at both ends of the step. `state` is that of the step's end.
   double margin(const LimitChange& change, const VectorX& state);
 
+  /// Counts whole turns of hinges up to a state. To be called at the end of each step, before the next one begins.
+  void followTurns(double time, const VectorX& state);
+
   /// What happens at the end of a step: impulses in limits that are reached, new constraints, released limits. True if
   /// anything does.
   bool resolve(double time, VectorX& state);
@@ -72,7 +75,6 @@ class LimitEvents {
   double tension(std::size_t limit, double time, const VectorX& state);
   std::optional<double> firstTensionLoss(const Step& step, std::size_t limit);
   std::optional<LimitChange> firstReach(const Step& step, std::size_t limit, double end) const;
-  void followTurns(const VectorX& state);
   /// A limit that is reached and goes on.
   struct Stretch {
     std::size_t limit;
@@ -94,6 +96,7 @@ class LimitEvents {
   EquationsOfMotion& equations_;
   ConstraintSolver solver_;
   double timeStep_ = 0;
+  double followedTime_ = 0;       // s: when turns were followed last
   std::size_t sceneConstraints_;  // those that are no limits
   std::vector<int> tautRow_;      // of each limit, among the constraints' rows; or -1: no smooth force pulls at it
   struct Member {

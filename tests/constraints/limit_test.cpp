@@ -161,10 +161,23 @@ TEST(JointLimit, CountsWholeTurnsFromWhereItWasFollowedLast) {
   StoppedBodies at(true);
   for (const int turns : {-3, 0, 2}) {
     at.stop.turned = 0.4 + 2 * std::numbers::pi * turns + 2.9;
-    EXPECT_NEAR(turnedOf(at.stop, at.state), 0.4 + 2 * std::numbers::pi * turns, 1e-14);
+    followTurn(at.stop, 0, at.state);
+    EXPECT_NEAR(at.stop.turned, 0.4 + 2 * std::numbers::pi * turns, 1e-14);
     at.stop.bound.value = 20;
     EXPECT_NEAR(motionOf(Limit(at.stop), at.state).slackLength, 0.7 * (20 - 0.4 - 2 * std::numbers::pi * turns), 1e-13);
     at.stop.bound.value = 1;
+  }
+}
+
+// A step may turn a hinge by more than half a turn: with rates r_0 and r_1 at its ends by (r_0 + r_1) t / 2, about.
+TEST(JointLimit, CountsWholeTurnsOfLongSteps) {
+  for (const double turned : {-9.0, 2.5, 4.0, 30.0}) {  // rad, in 2 s
+    StoppedBodies at(true);
+    at.stop.turned = at.kValue - turned, at.stop.rate = turned - at.kRate;
+    EXPECT_NEAR(turningTo(at.stop, 2, at.state), turned, 1e-13);
+    followTurn(at.stop, 2, at.state);
+    EXPECT_NEAR(at.stop.turned, at.kValue, 1e-13) << turned;
+    EXPECT_NEAR(at.stop.rate, at.kRate, 1e-13) << turned;
   }
 }
 

@@ -118,6 +118,25 @@ TEST(JointLimits, HingeCountsWholeTurns) {
   }
 }
 
+/// A rotor goes evenly, by more than half a turn in a step where the accuracy is coarse, to a stop several turns away.
+TEST(JointLimits, RotorReachesAStopAfterWholeTurnsInLongSteps) {
+  for (const double accuracy : {1e-2, 1e-3, 1e-6})
+    for (const double speed : {-20.0, 1.0, 5.0})
+      for (const double turned : {2.0, 7.0, 10.0, 30.0}) {
+        const double time = turned / std::abs(speed), bound = std::copysign(turned, speed);
+        const Trajectory moved = runStopped(
+            1.5 * time, accuracy, box(fmt::format(R"(, "angularVelocity": [0, 0, {}])", speed)),
+            fmt::format(R"("gravity": [0, 0, 0], "hinges": [{{"bodyA": "box", "anchorB": [0, 0, 0], "axis": [0, 0, 1],
+            "limits": {{"{}": {}, "restitution": 0.5}}}}],)",
+                        speed > 0 ? "upper" : "lower", bound));
+        const std::vector<Event> hits = eventsOf(moved, EventKind::impact);
+        ASSERT_EQ(hits.size(), 1u) << accuracy << " " << speed << " " << turned;
+        EXPECT_NEAR(hits[0].time / time, 1, accuracy);
+        const Frame& last = moved.frames.back();
+        EXPECT_NEAR(last.joints[0].coordinate, bound - 0.5 * speed * (last.time - time), accuracy * turned);
+      }
+}
+
 /// A light gate on a heavy one, 1 to 1000: the momentum of both about the hinges' common axis stays in the hit.
 TEST(JointLimits, LightBodyStrikesTheStopOfAHeavyOne) {
   const std::string heavy = R"({"name": "heavy", "mass": 2000, "shape": {"box": {"size": [0.2, 0.2, 0.2]}},

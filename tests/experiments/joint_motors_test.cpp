@@ -276,6 +276,35 @@ TEST(JointMotors, WeakMotorsLetACarRollBackInSteps) {
   expectLedger(moved, 1e-6, 1e-3);
 }
 
+/// A wheel of r = 0.2 m and 2 kg, in a fork of no more than 1 kg that goes up and down, stands on a belt that its
+/// friction makes it follow: mu (m + m_f) g r and the motor's T both turn it towards a target that is faster than the
+/// belt. In contact steps too the motor does not hold it back.
+TEST(JointMotors, MotorPushesOnWhereFrictionHelpsItInSteps) {
+  constexpr double kTorque = 0.3, kFriction = 0.1, kRadius = 0.2, kWheelInertia = 0.4 * 2 * kRadius * kRadius;
+  for (const double sign : {1.0, -1.0}) {
+    const Trajectory moved = runMotor(
+        0.1, 1e-3,
+        fmt::format(
+            R"({{"name": "belt", "shape": {{"box": {{"size": [9, 1, 1]}}}}, "position": [0, -0.5, 0], "motion": "driven", "material": "m",
+        "linearVelocity": [{}, 0, 0]}}, {{"name": "wheel", "mass": 2, "material": "m", "shape": {{"sphere": {{"radius": 0.2}}}}, "position":
+        [0, 0.2, 0]}}, {{"name": "fork", "mass": 1, "shape": {{"sphere": {{"radius": 0.1}}}}, "collision": "none",
+        "position": [0, 0.2, 0]}})",
+            2 * sign),
+        fmt::format(R"("materials": {{"m": {{"staticFriction": {0}, "dynamicFriction": {0}, "restitution": 0}}}},
+        "method": {{"name": "semiImplicitEuler", "timeStep": 0.001}},
+        "sliders": [{{"bodyA": "fork", "anchorB": [0, 0.2, 0], "axis": [0, 1, 0]}}],
+        "hinges": [{{"bodyA": "wheel", "bodyB": "fork", "anchorB": [0, 0, 0], "axis": [0, 0, 1],
+        "motor": {{"targetVelocity": {1}, "maxTorque": {2}}}}}])",
+                    kFriction, 40 * sign, kTorque));
+    const double rate = (kTorque + kFriction * 3 * kGravity * kRadius) / kWheelInertia;
+    for (const Frame& frame : moved.frames) {
+      if (frame.time == 0) continue;
+      EXPECT_NEAR(frame.states[1].angularVelocity.z(), sign * rate * frame.time, 1e-3 * rate) << frame.time;
+      EXPECT_NEAR(frame.joints[0].force, sign * kTorque, 1e-9) << frame.time;
+    }
+  }
+}
+
 /// A crank of 0.25 m from (0, 0), a coupler of 1 m and a rocker of 0.8 m from (0.85, 0), at right angles to the line of
 /// the pivots at the start. Their coordinates keep the coupler's length; the motor's work is the integral of its force
 /// over the crank's coordinate. Both ends of an interval in which the motor comes to its target have forces that

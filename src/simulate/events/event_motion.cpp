@@ -111,6 +111,7 @@ void EventMotion::advance(double frame) {
   // Remove the drift that velocities cannot see. Then what changes at the event?
   island_.state = step.state;
   projectState();
+  ropes_.followTurns(time, island_.state);
   changeForces(event);
   guard_->check(island_.state, time, step.timeStep);
   island_.requireUnsolvedPairsApart();

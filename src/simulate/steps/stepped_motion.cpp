@@ -163,6 +163,7 @@ bool SteppedMotion::solveContacts() {
   const double free = solver_.hasConstraints() ? solver_.largestError() : 0;
   const double size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
   ropes_.giveWay(contacts_.touching());
+  pushWithAllForce();
   contacts_.solveContacts(before_, length, ropes_, state);
   if (exhaustMotors()) return solveContacts();
   return contacts_.constraintError() <=
@@ -182,6 +183,17 @@ void SteppedMotion::holdReachedTargets() {
     const double missing = motor.sign * (motor.targetVelocity - rateOf(row, 0, island_.state));
     if (missing <= method_.timeStep * motor.maxForce * mobilityOf(row, mechanism.bodies, frames))
       motor.mode = JointMotor::Mode::holds;
+  }
+}
+
+/// Motors that have not come to their target in free motion, with all their force, hold nothing against contacts.
+void SteppedMotion::pushWithAllForce() {
+  std::vector<JointMotor>& motors = island_.assembly.mechanism.motors;
+  for (std::size_t i = 0; i < motors.size(); ++i) {
+    const double force = motorForces_[static_cast<Eigen::Index>(i)];
+    if (motors[i].mode == JointMotor::Mode::pushes || std::abs(force) < (1 - kAllOfAForce) * motors[i].maxForce)
+      continue;
+    motors[i].mode = JointMotor::Mode::pushes, motors[i].sign = force < 0 ? -1 : 1;
   }
 }
 

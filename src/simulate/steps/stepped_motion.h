@@ -53,6 +53,7 @@ class SteppedMotion {
   bool stopAtNextImpact();
   bool solveContacts();
   void holdReachedTargets();
+  void pushWithAllForce();
   bool exhaustMotors();
   void shorten();
   void countEvent();
