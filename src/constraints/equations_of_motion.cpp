@@ -137,10 +137,14 @@ EquationsOfMotion::MotorResponse EquationsOfMotion::responseOf(const std::vector
     return found;
   };
   MotorResponse response{accelerations(derivative), MatrixX(count, count)};
+  // The difference of two accelerations is that of a force as large as the motor's: 1 N m may be nothing beside
+  // weights.
   for (Eigen::Index k = 0; k < count; ++k) {
+    const std::size_t motor = holding[static_cast<std::size_t>(k)];
+    const double most = mechanism_.motors[motor].maxForce, force = most > 0 ? most : 1;
     VectorX pushed = derivative;
-    addForce(rows[holding[static_cast<std::size_t>(k)]], 1, state, pushed);
-    response.perForce.col(k) = accelerations(pushed) - response.free;
+    addForce(rows[motor], force, state, pushed);
+    response.perForce.col(k) = (accelerations(pushed) - response.free) / force;
   }
   std::vector<ConstraintBlock> held;
   for (const std::size_t motor : holding) held.push_back(rows[motor]);
