@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "experiments/expect_ledger.h"
+#include "math/rotation.h"
 
 namespace cradle {
 namespace {
@@ -21,7 +22,8 @@ std::string drivenBox(const Vec3& size, const std::string& motion) {
 
 Trajectory runDriven(double duration, double accuracy, const std::string& bodies, const std::string& more = "") {
   return simulate(sceneWith(fmt::format(R"("duration": {}, "accuracy": {}, "output": {{"framesPerSecond": 100}},
-    "materials": {{"m": {{"restitution": 0.5, "staticFriction": 0.4, "dynamicFriction": 0.3}}}}, {}
+    "materials": {{"m": {{"restitution": 0.5, "staticFriction": 0.4, "dynamicFriction": 0.3}},
+    "grip": {{"restitution": 0, "staticFriction": 1, "dynamicFriction": 1}}}}, {}
     "bodies": [{}])",
                                         duration, accuracy, more, bodies)));
 }
@@ -572,6 +574,84 @@ TEST(DrivenBodies, BodyBetweenWallsThatGoTogetherHasRoom) {
         EXPECT_NEAR(moved.frames.back().states[2].position.x(), 0.5, 1e-6) << shape << friction;
         EXPECT_NEAR(moved.frames.back().states[2].position.y(), 0.1, 1e-6) << shape << friction;
       }
+}
+
+/// A box falls onto a lift of constant V on one of its edges, rocks, and stands. What drives the lift gives it, with
+/// the impulse P, the work V . P = V . (m v + m g t), and no ledger lacks what ends the rocking.
+TEST(DrivenBodies, BoxRocksOnALiftUntilItStands) {
+  for (const double accuracy : {1e-6, 1e-11}) {
+    const double speed = 20;
+    const Trajectory moved =
+        runDriven(2.5, accuracy,
+                  drivenBox({9, 0.2, 9}, fmt::format(R"("linearVelocity": [0, {}, 0])", speed)) + fmt::format(R"(,
+        {{"name": "box", "material": "m", "mass": 2, "shape": {{"box": {{"size": [1, 1, 1]}}}}, "position": [0, 0.8, 0],
+        "linearVelocity": [0, {}, 0], "orientation": {{"axis": [0, 0, 1], "angleDegrees": 10}}}})",
+                                                                                                              speed));
+    const Frame& last = moved.frames.back();
+    EXPECT_NEAR(last.states[1].position.y() - last.states[0].position.y(), 0.6, 1e-9) << accuracy;
+    const double gained = 2 * (last.states[1].linearVelocity.y() - speed);
+    EXPECT_NEAR(last.energy.work / (speed * (gained + 2 * kGravity * last.time)), 1, 3 * accuracy + 1e-12) << accuracy;
+    EXPECT_LT(std::abs(last.energy.numerical) / last.energy.work, accuracy + 1e-12) << accuracy;
+  }
+}
+
+/// Two fingers on sliders of a hand hold a box with unequal forces and lift it off the ground: its contacts with the
+/// ground and with the fingers forbid each other as soon as the hand goes up, whatever friction could hold.
+TEST(DrivenBodies, HandLiftsABoxBetweenUnequalFingers) {
+  for (const double accuracy : {1e-4, 1e-6, 1e-9}) {
+    const Trajectory moved =
+        runDriven(1.2, accuracy,
+                  R"({"name": "ground", "shape": {"plane": {}}, "motion": "static", "material": "grip"},
+        {"name": "hand", "shape": {"box": {"size": [1.4, 0.1, 0.3]}}, "motion": "driven", "collision": "none",
+        "position": [0, 1, 0], "keyFrames": [{"time": 0.2}, {"time": 1, "position": [0, 2, 0]}]},
+        {"name": "box", "shape": {"box": {"size": [0.4, 0.4, 0.4]}}, "mass": 64, "material": "grip", "position": [0, 0.2, 0]},
+        {"name": "left", "shape": {"box": {"size": [0.1, 0.3, 0.3]}}, "mass": 9, "material": "grip", "position": [-0.25, 0.2, 0]},
+        {"name": "right", "shape": {"box": {"size": [0.1, 0.3, 0.3]}}, "mass": 9, "material": "grip", "position": [0.25, 0.2, 0]})",
+                  R"("sliders": [{"bodyA": "left", "bodyB": "hand", "anchorB": [-0.25, -0.8, 0], "axis": [1, 0, 0],
+        "motor": {"force": 861}}, {"bodyA": "right", "bodyB": "hand", "anchorB": [0.25, -0.8, 0], "axis": [-1, 0, 0],
+        "motor": {"force": 1171}}],)");
+    for (const Frame& frame : moved.frames)
+      EXPECT_NEAR(frame.states[1].position.y() - frame.states[0].position.y(), -0.8, accuracy) << frame.time;
+  }
+}
+
+/// A turning bar sweeps a box over the ground, by two corners of one of its edges: nothing presses it into the ground
+/// by that, whose impulses Coulomb's law would leave undetermined. The same for every direction in which it happens.
+TEST(DrivenBodies, BarSweepsABoxAlikeInAllDirections) {
+  std::vector<BodyState> ends;
+  for (const double degrees : {0.0, 20.0, 200.0, 300.0}) {
+    const Quat turn = rotationAbout(Vec3::UnitY(), degrees * kPi / 180);
+    const auto orientationOf = [&](double angle) {
+      const Quat q = turn * rotationAbout(Vec3::UnitY(), angle * kPi / 180);
+      return fmt::format(R"({{"w": {}, "x": {}, "y": {}, "z": {}}})", q.w(), q.x(), q.y(), q.z());
+    };
+    const Trajectory moved = runDriven(
+        0.3, 1e-8,
+        fmt::format(R"({{"name": "ground", "shape": {{"plane": {{}}}}, "motion": "static", "material": "grip"}},
+        {{"name": "bar", "shape": {{"box": {{"size": [4, 0.3, 0.1]}}}}, "motion": "driven", "material": "grip",
+        "position": [0, 0.2, 0], "orientation": {}, "angularVelocity": [0, 1.7, 0]}},
+        {{"name": "box", "shape": {{"box": {{"size": [0.209, 0.209, 0.209]}}}}, "mass": 9, "material": "grip",
+        "position": {}, "orientation": {}}})",
+                    orientationOf(-26), vectorText(turn * Vec3(-1.2, 0.1045, -0.05)), orientationOf(0)));
+    EXPECT_GE(eventsOf(moved, EventKind::impact).size(), 2u);
+    BodyState end = moved.frames.back().states[1];
+    end.position = turn.conjugate() * end.position, end.linearVelocity = turn.conjugate() * end.linearVelocity;
+    ends.push_back(end);
+    EXPECT_LT((end.position - ends[0].position).norm(), 1e-7) << degrees;
+    EXPECT_LT((end.linearVelocity - ends[0].linearVelocity).norm(), 1e-6) << degrees;
+  }
+}
+
+/// One ball goes with a belt, another one falls on it far away: that impact is none of the first.
+TEST(DrivenBodies, BeltCarriesNoImpactFromOneBodyToAnother) {
+  const Trajectory moved =
+      runDriven(0.5, 1e-6,
+                drivenBox({20, 1, 20}, R"("linearVelocity": [1, 0, 0], "position": [0, -0.5, 0])") +
+                    R"(, {"name": "lying", "material": "m", "shape": {"sphere": {"radius": 0.1}},
+        "position": [0, 0.1, 0], "linearVelocity": [1, 0, 0]}, {"name": "falling", "material": "m",
+        "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0.5, 4], "linearVelocity": [1, 0, 0]})");
+  EXPECT_FALSE(eventsOf(moved, EventKind::impact).empty());
+  for (const Event& event : moved.events) EXPECT_TRUE(event.bodyA != 0 || event.bodyB != 1) << event.time;
 }
 
 }  // namespace
