@@ -81,8 +81,7 @@ equations of motion. The error is that of the balls’ orientation, after 46 rad
     "shaken_table": Scene("D3", "Block on a shaken table", """
 A table swings to and fro; the block on it sticks while friction can give it the table’s acceleration, slips, and sticks
 again: nine times in three seconds. As engines know one coefficient of friction, both are equal here: sliding begins at no
-speed, where its friction has no sure direction. Cradle finds that instant, resolves contact in steps of a millisecond or less
-until the direction is sure, and says so: it costs the same whatever accuracy is asked. Engines are off by some of a step
-at each change. No run knows the end better than the dashed line: Cradle counts as sliding what takes 1e-6 g more than
+speed. Cradle locates each slip and each stick, at any accuracy: its coarsest run has an error below 1e-6 already. Engines are
+off by some of a step at each change. No run knows the end better than the dashed line: Cradle counts as sliding what takes 1e-6 g more than
 friction gives, which begins 3e-7 s late."""),
 }
