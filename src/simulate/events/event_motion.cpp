@@ -76,7 +76,13 @@ EventMotion::EventMotion(IslandState& island, LimitEvents& ropes, const ChosenMe
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   startConstraintError_ = solver_.largestError();
-  // The guard starts here: overlaps that time stepping left are taken out by now, and their energy with them.
+  // The guard starts here: overlaps and errors of constraints that time stepping left are taken out by now, and their
+  // energy with them.
+  if (island_.time > 0 && solver_.hasConstraints()) {
+    const VectorX before = island_.state;
+    project(island_.state);
+    bookProjection(before, island_.assembly.mechanism, island_.state);
+  }
   guard_.emplace(island_.assembly, island_.state, method_, island_.scene.duration);
 }
 
