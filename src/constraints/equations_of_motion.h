@@ -93,6 +93,7 @@ class EquationsOfMotion {
   void factorize(const VectorX& state);
   void constrain(VectorX& derivative);
   void applyMotors(const VectorX& state, VectorX& derivative);
+  bool isStopped(const JointMotor& motor) const;
   /// What motors do to their coordinates, with all constraints and contacts.
   struct MotorResponse {
     VectorX free;      // rad/s^2 or m/s^2: accelerations without their forces

@@ -458,6 +458,26 @@ TEST(JointMotors, MotorPressesAgainstAStop) {
   }
 }
 
+/// A motor of any strength lifts an arm of 30 kg to its stop, and with it a ball that bounces and rolls on it. Pressed
+/// against the stop it works nothing, whatever errors of steps there are in the arm's velocity.
+TEST(JointMotors, StrongMotorWorksNothingAtItsStop) {
+  for (const double accuracy : {1e-3, 1e-6, 1e-9})
+    for (const double most : {1e6, 1e9, 1e12}) {
+      const Trajectory moved = runMotor(
+          0.4, accuracy,
+          R"({"name": "arm", "shape": {"box": {"size": [1, 0.1, 0.3]}}, "mass": 30, "material": "arm", "position": [0, 0.6, 0]},
+          {"name": "ball", "shape": {"sphere": {"radius": 0.22}}, "mass": 13, "material": "ball", "position": [0.234, 0.87, 0.029]})",
+          fmt::format(R"("materials": {{"arm": {{"restitution": 0, "staticFriction": 1, "dynamicFriction": 1}},
+          "ball": {{"restitution": 1, "staticFriction": 0.5, "dynamicFriction": 0.35}}}},
+          "hinges": [{{"bodyA": "arm", "anchorA": [-0.45, 0, 0], "axis": [0, 0, 1], "anchorB": [-0.45, 0.6, 0],
+          "motor": {{"targetVelocity": 1, "maxTorque": {}}}, "limits": {{"lower": -0.2, "upper": 0.2263}}}}])",
+                      most));
+      EXPECT_NEAR(moved.frames.back().joints[0].coordinate, 0.2263, 1e-9);
+      EXPECT_LT(std::abs(moved.frames.back().energy.numerical), accuracy * moved.frames.back().energy.work + 1e-8)
+          << accuracy << " " << most;
+    }
+}
+
 /// A motor of 1e9 N has a body of 2 kg at 3 m/s after 6 ns, one of 1e15 N at once. A wall of 4 kg, struck without
 /// restitution, leaves both at 1 m/s and 6 J less, and 12 ns later the motor has both at 3 m/s: 21 nm less on the way.
 TEST(JointMotors, StrongMotorIsAtItsTargetAtOnce) {

@@ -244,7 +244,7 @@ bool EventImpacts::resolveByThoseThatClose(std::vector<ImpactContact>& impacts, 
     for (ImpactContact& impact : impacts) impact.impulse.setZero();
     island_.state = approach;
     if (others.empty()) return false;
-    closing = std::max(still, FrictionalImpactTolerances(fastest).sliding);
+    closing = std::max(still, FrictionalImpactTolerances(fastest).closed);
     std::vector<ImpactContact> struck;
     for (const std::size_t i : members) struck.push_back(impacts[i]);
     faults = resolveFrictionalImpact(struck, response, island_.state);
