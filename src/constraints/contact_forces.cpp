@@ -293,6 +293,7 @@ void ContactSolver::takeForces(const Group& group, VectorX& derivative) {
     const double* const multipliers = &multipliers_[index(blocks_[index(i)].firstRow)];
     ContactForce& force = forces_[index(i)];
     force.normal = multipliers[block.rows - 1];
+    force.left = 0;
     if (contact.motion == ContactMotion::sliding) {
       force.tangential = -contact.friction * force.normal * force.slidingDirection;
       frictionEnergy(derivative) -= force.tangential.dot(force.tangentialVelocity);
@@ -310,7 +311,7 @@ void ContactSolver::takeContradictions(const Group& group, const VectorX& deriva
   for (const int i : group.members.contacts) {
     const ConstraintBlock& block = blocks_[index(i)].rows.block;
     ContactForce& force = forces_[index(i)];
-    force.left = 0, force.asked = group.asked;
+    force.asked = group.asked;
     withContactRows(block.rows, [&](auto rows) {
       std::array<double, rows> rates;
       findRates<rows>(block, derivative, rates.data());

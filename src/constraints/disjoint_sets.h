@@ -20,7 +20,7 @@ class DisjointSets {
   /// The first body of a body's set: the same for all that are joined. O(1) after flatten(), else O(bodies) at worst.
   int islandOf(int body) const;
 
-  /// That of the first of two that is neither fixed nor driven; one must be such.
+  /// The same for the first of two bodies that is neither fixed nor driven; one must be such.
   int islandOf(int bodyA, int bodyB) const { return islandOf(joinsNothing(bodyA) ? bodyB : bodyA); }
 
   /// Makes islandOf fast until the next join. O(bodies).

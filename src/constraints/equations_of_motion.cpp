@@ -124,8 +124,8 @@ void EquationsOfMotion::applyMotors(const VectorX& state, VectorX& derivative) {
       pushWork(derivative) += motorForces_[static_cast<Eigen::Index>(i)] * rateOf(rows[i], 0, state);
 }
 
-/// Whether a stop holds a motor's joint. What it has of velocity then is an error of the step, against which the stop
-/// pushes back as much as the motor pushes: a strong motor would seem to work.
+/// Whether a stop holds a motor's joint. Its velocity then is an error of the step, and the stop pushes back as much as
+/// the motor pushes: a strong motor would seem to work.
 bool EquationsOfMotion::isStopped(const JointMotor& motor) const {
   const auto isSame = [](const Attachment& a, const Attachment& b) { return a.body == b.body && a.point == b.point; };
   return std::any_of(mechanism_.constraints.begin(), mechanism_.constraints.end(), [&](const Constraint& constraint) {

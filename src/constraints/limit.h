@@ -51,8 +51,8 @@ LimitMotion motionOf(const Limit& limit, const VectorX& state);
 /// to where it was followed last and `turning` (rad) on.
 double slackOf(const JointLimit& limit, const RigidTransform& poseA, const RigidTransform& poseB, double turning);
 
-/// What a hinge turns by (rad) from where it was followed last until it comes to `state` in `time` (s), if its rate
-/// changes evenly meanwhile.
+/// The angle (rad) by which a hinge turns from where it was followed last until it comes to `state` in `time` (s), if
+/// its rate changes evenly meanwhile.
 double turningTo(const JointLimit& limit, double time, const VectorX& state);
 
 /// Follows a hinge to `state`, to which it has come in `time` (s), within half a turn of what `turningTo` says.

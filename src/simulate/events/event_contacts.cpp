@@ -56,7 +56,7 @@ void EventContacts::noteShortMomentArms(double momentArm) {
   if (active_.empty() || !solver_.hasConstraints()) return;
   solver_.factorize(island_.state);
   std::vector<Contact> touching = findTouching(island_, solver_, tolerances_, {});
-  // What still closes, as the edge of a lid beside its hinge does before the lid lands, has no lasting contact.
+  // A contact that still closes, as that of the edge of a lid beside its hinge before the lid lands, does not last.
   const double still = tolerances_.minOpeningSpeed(tolerances_.scales.size);
   std::erase_if(touching, [&](const Contact& contact) { return openingSpeed(contact, island_.state) < -still; });
   active_.noteShortMomentArms(touching, solver_, momentArm);
