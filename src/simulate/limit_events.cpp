@@ -350,12 +350,13 @@ void LimitEvents::pull(double time, const std::vector<Stretch>& stretches, Vecto
     isStretched_[limit] = !rebounds;
     if (!rebounds && isLoaded) tautRow_[limit] = 0, tensionScales_[limit] = usualTension(limit);
   }
-  rebuildConstraints();
-  if (solver_.hasConstraints()) {
-    solver_.factorize(state);
-    solver_.constrainVelocities(state);
-  }
   bookNumerical(energyConstant(assembly_.mechanism, before), assembly_.mechanism, state);
+  rebuildConstraints();
+  if (!solver_.hasConstraints()) return;
+  const VectorX pulled = state;
+  solver_.factorize(state);
+  solver_.constrainVelocities(state);
+  bookProjection(pulled, assembly_.mechanism, state);
 }
 
 /// A limit closes as a contact where it lengthens. An impulse along the line of both ends has the same effect wherever

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dynamics/driven_body.h"
 #include "math/rotation.h"
 
 namespace cradle {
@@ -99,6 +100,35 @@ TEST(EnergyConstant, IsThatOfAStepsStartAtItsEnd) {
   bookStep(at.mechanism, step);
   EXPECT_NEAR(numericalEnergy(step.state), -18, kInvariantRounding);
   EXPECT_EQ(numericalEnergy(step.startState), 0);
+}
+
+// A projection by what is driven is the work m du . u + dL . w, of which m du^2 / 2 + dw . dL / 2 is lost: both are as
+// stated in a frame in which all stand still at first, and the latter is the same in every frame. Without a driven body
+// nothing works.
+TEST(EnergyConstant, BooksTheWorkOfProjectionsBesideDrivenBodies) {
+  const Vec3 change(0.3, -0.2, 0.5), turn(0.02, 0.01, -0.03);
+  for (const bool isLed : {true, false})
+    for (const Vec3& common : {Vec3(0, 0, 0), Vec3(30, -20, 10)}) {
+      PointMasses at;
+      if (isLed) {
+        at.mechanism.bodies.push_back(drivenRigidBody());
+        VectorX state = VectorX::Zero(stateSize(3));
+        for (Eigen::Index body = 0; body < 2; ++body) setOrientation(state, body, orientation(at.state, body));
+        setOrientation(state, 2, Quat::Identity());
+        at.state = state;
+        add(2, PrescribedMotion{}, at.mechanism.driven);
+      }
+      for (Eigen::Index body = 0; body < 2; ++body) linearVelocity(at.state, body) = common;
+      angularVelocity(at.state, 0).setZero();
+      const VectorX before = at.state;
+      linearVelocity(at.state, 0) += change, angularVelocity(at.state, 0) += turn;
+      const Vec3 spin = spinMomentum(at.mechanism.bodies[0], 0, at.state);
+      const double mass = at.mechanism.bodies[0].mass, lost = (mass * change.squaredNorm() + turn.dot(spin)) / 2,
+                   work = mass * change.dot(common + change) + turn.dot(spin);
+      bookProjection(before, at.mechanism, at.state);
+      EXPECT_NEAR(pushWork(at.state), isLed ? work : 0, 1e3 * kInvariantRounding);
+      EXPECT_NEAR(numericalEnergy(at.state), isLed ? lost : lost - work, 1e3 * kInvariantRounding);
+    }
 }
 
 }  // namespace

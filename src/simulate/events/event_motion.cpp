@@ -49,6 +49,12 @@ VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double dur
   return tolerance;
 }
 
+/// One Newton step to where a gap s closes that was `earlier` a time `before`: theta = -s / s' with s' = (s - earlier)
+/// / before. Zero where the gap does not close, which is then rounding.
+double untilClosed(double gap, double earlier, double before) {
+  return earlier > gap ? gap * before / (earlier - gap) : 0;
+}
+
 }  // namespace
 
 EventMotion::EventMotion(IslandState& island, LimitEvents& ropes, const ChosenMethod& method, bool isTrial)
@@ -308,15 +314,14 @@ std::optional<double> EventMotion::fractionOfImpact(const ImpactTime& impact) {
   };
   const double left = gapAt(fraction);
   if (std::abs(left) <= tolerance) return fraction;
-  const double closed = gapAt((1 - kSlopeRatio) * fraction) - left;
-  const double correction = closed > 0 ? left * kSlopeRatio * fraction / closed : 0;  // else the gap is rounding
+  const double before = kSlopeRatio * fraction, correction = untilClosed(left, gapAt(fraction - before), before);
   if (std::abs(correction) <= kShortCorrection * fraction && std::abs(gapAt(fraction + correction)) <= tolerance)
     return fraction + correction;
   return left > tolerance ? std::nullopt : std::optional(fraction);
 }
 
 /// Ends the step where a gap closes. The gap s that the interpolant's error leaves is taken out by one Newton step
-/// along the end derivative: theta = -s / s'. The gap is that of the projected state, as contacts that close at one
+/// along the end derivative. The gap is that of the projected state, as contacts that close at one
 /// instant are told apart by what projection would leave of it. False if the gap is still open at the instant of the
 /// interpolant: no later impact has been searched for, so the step ends there without an event.
 bool EventMotion::stopAtImpact(const ImpactTime& impact) {
@@ -328,8 +333,7 @@ bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   evaluateEndDerivative(island_.rightHandSide, step);
   const double left = gap(step.state), before = kSlopeRatio * length;
   step.work = step.state - before * step.endDerivative;
-  const double closed = gap(step.work) - left;
-  const double correction = closed > 0 ? left * before / closed : 0;  // else the gap is rounding
+  const double correction = untilClosed(left, gap(step.work), before);
   step.work = step.state + correction * step.endDerivative;
   const double tolerance = tolerances_.closedGap;
   if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))

@@ -268,5 +268,26 @@ TEST(SteppedMotion, LeavesFrictionToTheEndOfAStepWithAnImpact) {
   }
 }
 
+// A motor that a step of its own body alone would bring to its target, 1 kg of 10 in one row, does not come there: all
+// its force acts, beside the friction of a belt under the other 9 kg, and nothing holds the speed that it gives alone.
+TEST(SteppedMotion, LeavesMotorsAllTheirForceWhereContactsHelp) {
+  BySteps at(R"("duration": 1, "materials": {"stuff": {"staticFriction": 0.2, "dynamicFriction": 0.2}}, "bodies": [
+                 {"name": "belt", "shape": {"box": {"size": [9, 0.2, 1]}}, "motion": "driven", "material": "stuff",
+                  "position": [0, -0.1, 0], "linearVelocity": [5, 0, 0]},
+                 {"name": "load", "shape": {"box": {"size": [0.4, 0.2, 0.6]}}, "mass": 9, "material": "stuff",
+                  "position": [0, 0.1, 0]},
+                 {"name": "carriage", "shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "mass": 1,
+                  "position": [-0.5, 0.1, 0]}],
+                 "rods": [{"bodyA": "carriage", "bodyB": "load", "anchorA": [0, -0.1, 0], "anchorB": [-0.2, -0.1, 0]}],
+                 "sliders": [{"bodyA": "carriage", "anchorA": [0, 0, 0], "anchorB": [-0.5, 0.1, 0], "axis": [1, 0, 0],
+                              "motor": {"targetVelocity": 0.01, "maxForce": 10}}])",
+             kGridTime);
+  at.motion.advance(0);
+  ASSERT_EQ(at.island.time, kGridTime);
+  // Along x alone: all else that acts is the weight, and the rail.
+  EXPECT_NEAR(linearVelocity(at.state(), 2).x(), (10 + 0.2 * 9 * kGravity) / 10 * kGridTime,
+              1e-6 * kGravity * kGridTime);
+}
+
 }  // namespace
 }  // namespace cradle
