@@ -149,11 +149,11 @@ void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
   const double fraction = (time - island_.step.time) / island_.step.timeStep;
   interpolate(island_.step, fraction, reported_);
   place(island_.assembly.mechanism.driven, time, reported_);
-  const bool isStepped = stepWhereForcesJump(time);
+  stepWhereForcesJump(time);
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->addContactMotion(fraction, reported_);
   const Mechanism& mechanism = island_.assembly.mechanism;
   const auto* events = std::get_if<EventMotion>(&motion_);
-  if (events && !mechanism.driven.empty() && !isStepped) integrateLedger(*events, fraction);
+  if (events && events->ledgerOfStep()) setLedger(*events->ledgerOfStep(), island_.step, fraction, reported_);
   if (events && keepsConstraints && !events->contactsOfStep().empty()) {
     project(events->contactsOfStep());
   } else if (keepsConstraints && solver_.hasConstraints()) {
@@ -184,12 +184,11 @@ bool IslandSolver::mayFrictionTurn(const std::vector<ContactConstraint>& contact
 
 /// Where sliding is about to stop, friction across it may turn so fast that the stages of a step, and its interpolant
 /// with them, say nothing of what is between them, though the step is right. The rates of the reported state tell that
-/// from the forces there: it becomes the end of a shorter step from the same start. True if it does.
-bool IslandSolver::stepWhereForcesJump(double time) {
+/// from the forces there: if they do, it becomes the end of a shorter step from the same start.
+void IslandSolver::stepWhereForcesJump(double time) {
   const auto* events = std::get_if<EventMotion>(&motion_);
-  if (!events || !mayFrictionTurn(events->contactsOfStep())) return false;
+  if (!events || !mayFrictionTurn(events->contactsOfStep())) return;
   const Step& step = island_.step;
-  bool jump = false;
   withForcesOfStep(*events, [&] {
     setResting(still_);  // bodies that the end of the step has woken have rested in it
     frameEquations_.evaluate(time, reported_, derivative_);
@@ -197,14 +196,12 @@ bool IslandSolver::stepWhereForcesJump(double time) {
     const Eigen::Index first = poseComponents(reported_), count = reported_.size() - kLedgerSize - first;
     const auto size = 1 + reported_.segment(first, count).array().abs();
     const auto defect = (derivative_ - frameStep_.work).segment(first, count).array().abs() / size;
-    jump = !(defect.maxCoeff() * step.timeStep <= kMaxDefect * island_.scene.accuracy);
-    if (!jump) return;
+    if (defect.maxCoeff() * step.timeStep <= kMaxDefect * island_.scene.accuracy) return;
     frameStep_.startDerivativeIsKnown = false;
     method_.integrate(frameEquations_.rightHandSide(), step.startState, step.time, time - step.time, frameStep_);
     reported_ = frameStep_.state;
     place(island_.assembly.mechanism.driven, time, reported_);
   });
-  return jump;
 }
 
 template <class Evaluate>
@@ -227,14 +224,6 @@ void IslandSolver::withForcesOfStep(const EventMotion& events, const Evaluate& e
   setResting(resting);
   evaluate();
   swapForces();
-}
-
-/// Energies of the ledger of an island with driven bodies, in the state of a frame.
-void IslandSolver::integrateLedger(const EventMotion& events, double fraction) {
-  withForcesOfStep(events, [&] {
-    cradle::integrateLedger(frameEquations_, island_.assembly.mechanism, island_.step, fraction,
-                            events.toleranceOfWork(), reported_);
-  });
 }
 
 void IslandSolver::findJointStates(double time) {

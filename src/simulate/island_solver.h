@@ -60,11 +60,10 @@ class IslandSolver {
   /// alone.
   void interpolateAt(double time, bool keepsConstraints);
   bool mayFrictionTurn(const std::vector<ContactConstraint>& contacts) const;
-  bool stepWhereForcesJump(double time);
+  void stepWhereForcesJump(double time);
   /// Calls evaluate() with contacts, constraints, pushes and motors as they were in the last step of events.
   template <class Evaluate>
   void withForcesOfStep(const EventMotion& events, const Evaluate& evaluate);
-  void integrateLedger(const EventMotion& events, double fraction);
   void findJointStates(double time);
   VectorX motorForces(double time);
   void setResting(const std::vector<char>& resting);

@@ -5,7 +5,6 @@
 
 #include "constraints/invariants.h"
 #include "dynamics/driven_body.h"
-#include "math/gauss_legendre.h"
 
 namespace cradle {
 namespace {
@@ -28,19 +27,20 @@ double toleranceOfWork(const ChosenMethod& method, const Mechanism& mechanism, c
   return error <= tolerance ? INFINITY : tolerance;
 }
 
-void integrateLedger(EquationsOfMotion& equations, const Mechanism& mechanism, const Step& step, double fraction,
-                     double tolerance, VectorX& state) {
+RunningIntegral integralOfLedger(EquationsOfMotion& equations, const Mechanism& mechanism, const Step& step,
+                                 double tolerance) {
   VectorX sample, rates;
   const auto ratesAt = [&](double part) -> VectorX {
     interpolate(step, part, sample);
     place(mechanism.driven, step.time + part * step.timeStep, sample);
     equations.evaluate(step.time + part * step.timeStep, sample, rates);
-    return rates.tail<kLedgerSize>();
+    return step.timeStep * rates.tail<kLedgerSize>();
   };
-  const double length = step.timeStep;
-  VectorX ledger = step.startState.tail<kLedgerSize>(), known;
-  if (fraction == 1) known = (step.state.tail<kLedgerSize>() - ledger) / length;
-  ledger += length * integralOf(ratesAt, 0, fraction, tolerance / length, known);
+  return {ratesAt, 0, 1, tolerance};
+}
+
+void setLedger(const RunningIntegral& integral, const Step& step, double fraction, VectorX& state) {
+  VectorX ledger = step.startState.tail<kLedgerSize>() + integral.upTo(fraction);
   dampingEnergy(state) = dampingEnergy(ledger), pushWork(state) = pushWork(ledger);
 }
 

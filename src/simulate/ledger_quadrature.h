@@ -2,6 +2,7 @@
 
 #include "constraints/equations_of_motion.h"
 #include "dynamics/integrators/step.h"
+#include "math/running_integral.h"
 #include "simulate/plan/plan.h"
 
 namespace cradle {
@@ -12,11 +13,12 @@ namespace cradle {
 /// forces that the step has. `step` is as the integrator has left it.
 double toleranceOfWork(const ChosenMethod& method, const Mechanism& mechanism, const Step& step);
 
-/// Sets damping and work of `state`, at a fraction of a step, to what they are at its start and the integrals of their
-/// rates along the interpolant: of degree 11, more exact than the interpolant of a sum. The step must be prepared
-/// (prepareInterpolant), and the equations have the forces that acted in it. `tolerance` is that of an integral (J),
-/// infinite for one formula.
-void integrateLedger(EquationsOfMotion& equations, const Mechanism& mechanism, const Step& step, double fraction,
-                     double tolerance, VectorX& state);
+/// What the ledger's rates along the interpolant give from a step's start up to fractions of it, to a tolerance (J).
+/// The step must be prepared (prepareInterpolant), and the equations have the forces that acted in it.
+RunningIntegral integralOfLedger(EquationsOfMotion& equations, const Mechanism& mechanism, const Step& step,
+                                 double tolerance);
+
+/// Sets damping and work of `state`, at a fraction of a step, to that.
+void setLedger(const RunningIntegral& integral, const Step& step, double fraction, VectorX& state);
 
 }  // namespace cradle

@@ -261,7 +261,9 @@ TEST(DrivenBodies, HandLowersAPlateOnRopes) {
     EXPECT_LT(end.states[1].linearVelocity.norm(), 1e-6);
     EXPECT_LT(end.energy.impact + end.energy.friction, 2);  // m v^2 / 2, v up to 0.75 m/s
     EXPECT_NEAR(end.energy.work, -2 * kGravity * 0.28 + end.energy.impact + end.energy.friction, 1e-9);
-    expectLedger(moved, 1e-11, 1e-9);
+    EXPECT_LT(std::abs(end.energy.numerical), 1e-9);
+    // Frames inside steps have the error of the interpolant, as large as the local one: 2e-8 (1 + 8 J).
+    expectLedger(moved, 1e-11, 2e-8 * (1 + 8));
   }
 }
 

@@ -114,9 +114,11 @@ void EventMotion::advance(double frame) {
     motorsOfStep_ = mechanism.motors;
   }
 
+  ledgerOfStep_.reset();
   if (std::isfinite(toleranceOfWork_)) {
     prepareInterpolant(island_.rightHandSide, step);
-    integrateLedger(island_.equations, mechanism, step, 1, toleranceOfWork_, step.state);
+    ledgerOfStep_ = integralOfLedger(island_.equations, mechanism, step, toleranceOfWork_);
+    setLedger(*ledgerOfStep_, step, 1, step.state);
   }
   bookStep(mechanism, step);
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "dynamics/integrators/step_size.h"
+#include "math/running_integral.h"
 #include "simulate/energy_guard.h"
 #include "simulate/events/event_contacts.h"
 #include "simulate/events/event_tolerances.h"
@@ -45,8 +46,8 @@ class EventMotion {
   const std::vector<PushForce>& pushesOfStep() const { return pushesOfStep_; }
   const std::vector<JointMotor>& motorsOfStep() const { return motorsOfStep_; }
 
-  /// J: of the work of driven bodies in the last step, as in integrateLedger.
-  double toleranceOfWork() const { return toleranceOfWork_; }
+  /// Of the last step, if its own sum of the work of driven bodies may be less exact than asked.
+  const std::optional<RunningIntegral>& ledgerOfStep() const { return ledgerOfStep_; }
 
   /// Whether all bodies of the island lie still.
   bool isAtRest() const;
@@ -102,9 +103,10 @@ class EventMotion {
   ConstraintSolver solver_;
   EventRateLimit eventRateLimit_;
   VectorX tolerance_;
-  VectorX projected_;                // scratch
-  double startConstraintError_ = 0;  // m or rad
-  double toleranceOfWork_ = INFINITY;
+  VectorX projected_;                  // scratch
+  double startConstraintError_ = 0;    // m or rad
+  double toleranceOfWork_ = INFINITY;  // J, of the last step
+  std::optional<RunningIntegral> ledgerOfStep_;
   std::vector<int> tautRowsBefore_;  // of ropes, before an event
   std::vector<ContactConstraint> contactsOfStep_;
   Constraints constraintsOfStep_;
