@@ -12,8 +12,8 @@ constexpr int kDegree = 10;      // of the integrand's polynomial
 constexpr int kMaxHalvings = 8;  // a 256th of the interval: what is rougher than that has jumps
 constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();  // of sums of eleven terms, by their largest
 
-/// A component a row, a column each for T_0, T_1 ... on -1..1: c_k = (2 / N) sum_j f(cos(j pi / N)) cos(j k pi / N) with
-/// the first and the last term of the sum halved, and so the first and the last coefficient.
+/// A component a row, a column each for T_0, T_1 ... on -1..1: c_k = (2 / N) sum_j f(cos(j pi / N)) cos(j k pi / N)
+/// with the first and the last term of the sum halved, and so the first and the last coefficient.
 MatrixX coefficientsOf(const MatrixX& values) {
   MatrixX coefficients = MatrixX::Zero(values.rows(), kDegree + 1);
   const auto half = [](int at) { return at == 0 || at == kDegree ? 0.5 : 1; };

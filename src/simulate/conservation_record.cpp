@@ -93,6 +93,13 @@ void ConservationRecord::add(double time, const VectorX& state) {
   largestEnergy_ = std::max({largestEnergy_, sums.kinetic, std::abs(sums.potential - start_.potential)});
   const double rounding = energyOfPlaceErrors(assembly_.mechanism, assembly_.radii, state, 0);
   energy_.add(time, std::abs(numericalEnergy(state)) - rounding, ratio_ * largestEnergy_);
+  const auto addDissipation = [&](Dissipation& by, double taken) {
+    by.given.add(time, by.taken - taken - rounding, ratio_ * largestEnergy_);
+    by.taken = std::max(by.taken, taken);
+  };
+  addDissipation(byImpact_, impactEnergy(state));
+  addDissipation(byFriction_, frictionEnergy(state));
+  addDissipation(byDamping_, dampingEnergy(state));
   if (isIsolated_) addMomenta(time, state, sums);
 }
 
@@ -112,6 +119,9 @@ std::optional<ConservationRecord::Loss> ConservationRecord::firstLoss() const {
     if (time && (!first || *time < first->time)) first = Loss{*time, sum};
   };
   judge(energy_, largestEnergy_, "numerical energy");
+  judge(byImpact_.given, largestEnergy_, "energy that impacts gave");
+  judge(byFriction_.given, largestEnergy_, "energy that friction gave");
+  judge(byDamping_.given, largestEnergy_, "energy that damping gave");
   judge(momentum_, largestMomentum_, "momentum that nothing gave");
   judge(spin_, largestSpin_, "angular momentum that nothing gave");
   return first;

@@ -27,11 +27,11 @@ class Drift {
   std::vector<std::pair<double, double>> largest_;  // s, drift: ascending
 };
 
-/// Judges by the frames of an island whether the accuracy was kept: by numerical energy, and by momentum and angular
-/// momentum of an island on which nothing acts from outside but gravity. (What is fixed takes any momentum.) The
-/// measure of the energy is the largest in the frames: the kinetic energy, the change of the potential energy, and what
-/// a fall of the bodies by their radii of gyration would give. The measures of the momenta are the largest sums of the
-/// bodies' magnitudes.
+/// Judges by the frames of an island whether the accuracy was kept: by numerical energy, by energy that impacts,
+/// friction and dampers have taken, which they never give back, and by momentum and angular momentum of an island on
+/// which nothing acts from outside but gravity. (What is fixed takes any momentum.) The measure of the energy is the
+/// largest in the frames: the kinetic energy, the change of the potential energy, and what a fall of the bodies by
+/// their radii of gyration would give. The measures of the momenta are the largest sums of the bodies' magnitudes.
 class ConservationRecord {
  public:
   /// Keeps a reference to `assembly`. `accuracy`: the one asked, m/s of bodies at rest.
@@ -58,6 +58,11 @@ class ConservationRecord {
   Invariants start_;
   Vec3 startSpin_;  // kg m^2/s: angular momentum about the centre of mass of all
   double largestEnergy_ = 0, largestMomentum_ = 0, largestSpin_ = 0;  // J, kg m/s, kg m^2/s
+  struct Dissipation {
+    double taken = 0;  // J: the most in a frame until now
+    Drift given;
+  };
+  Dissipation byImpact_, byFriction_, byDamping_;
   Drift energy_, momentum_, spin_;
 };
 

@@ -82,6 +82,23 @@ TEST_F(EnergyOfASphere, DoesNotCountRounding) {
   EXPECT_EQ(timeOf(far), 0.2);
 }
 
+// What they have taken may be any part of the largest energy, but it stays taken: each by itself.
+TEST_F(EnergyOfASphere, MayNotComeFromImpactsFrictionOrDampers) {
+  const double largest = kMass * 5 * 5 / 2.0;
+  using Taken = double& (*)(VectorX&);
+  for (const Taken taken : {Taken(impactEnergy), Taken(frictionEnergy), Taken(dampingEnergy)}) {
+    ConservationRecord record(at_.island.assembly, kAccuracy);
+    VectorX state = at_.state();
+    linearVelocity(state, 0) = Vec3(5, 0, 0);
+    record.add(0, state);
+    for (const double part : {0.5, 0.9, 0.9 - kBelow}) taken(state) = part * largest, record.add(part, state);
+    EXPECT_EQ(timeOf(record), nullopt);
+    taken(state) = (0.9 - kBeyond) * largest, record.add(2, state);
+    taken(state) = largest, record.add(3, state);
+    EXPECT_EQ(timeOf(record), 2);
+  }
+}
+
 TEST_F(EnergyOfASphere, TellsTheFirstFrameBeyondWhetherLostOrGained) {
   const double largest = kMass * 5 * 5 / 2.0;
   add(0, 0, 5, 0), add(1, 0, 5, kBelow * largest), add(2, 0, 5, -kBelow * largest);

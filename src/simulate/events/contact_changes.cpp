@@ -23,6 +23,7 @@ using Kind = ContactChange::Kind;
 constexpr int kEventSamples = 4;      // of a step of order 8
 constexpr int kFewEventSamples = 2;   // of one of order 5, which is half as long
 constexpr int kMaxBorderCuts = 60;    // halves of a step: none is left, to rounding
+constexpr double kAtOnce = 1e-6;      // of a step: changes of several contacts that are one
 constexpr int kMaxSecants = 20;       // of infeasibility; six are usual
 constexpr double kBehindKink = -0.9;  // a larger infeasibility is behind its kink, whatever rounding does
 
@@ -207,7 +208,7 @@ std::optional<ContactChange> ContactChanges::first(const std::vector<ContactReco
     std::optional<ContactChange> found = firstBetween(records, from, to);
     if (!found && k > 1) found = firstInDip(records, from - 1.0 / samples, from, to);
     if (leaving && leaving->fraction <= (found ? found->fraction : to))
-      return ContactChange{Kind::leave, leaving->fraction, leaving->record};
+      return ContactChange{Kind::leave, leaving->fraction, leaving->record, found ? found->latest : to};
     if (found) return found;
     std::swap(earlier_, before_), std::swap(before_, ahead_);
   }
@@ -251,6 +252,7 @@ std::optional<ContactChange> ContactChanges::firstInDip(const std::vector<Contac
 std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<ContactRecord>& records, double from,
                                                           double to) {
   std::optional<ContactChange> first;
+  std::vector<double> fractions;
   isInDoubt_.assign(records.size(), 0);
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (ahead_[i][kOfRows] < 0) isInDoubt_[i] = 1;
@@ -272,12 +274,17 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
       }
       ContactChange change{kKinds[kind], 0, i};
       change.fraction = locate(change, records, from, before_[i][kind], end, marginEnd);
+      fractions.push_back(change.fraction);
       if (!first || change.fraction < first->fraction) first = change;
     }
   }
+  if (first) first->latest = to;
+  for (const double fraction : fractions)
+    if (fraction > first->fraction + kAtOnce) first->latest = std::min(first->latest, fraction);
   if (std::any_of(isInDoubt_.begin(), isInDoubt_.end(), [](char isInDoubt) { return isInDoubt != 0; })) {
     const double end = first ? first->fraction : to;
-    if (const auto failure = firstInfeasible(records, from, end)) first = ContactChange{Kind::redundant, *failure, 0};
+    if (const auto failure = firstInfeasible(records, from, end))
+      first = ContactChange{Kind::redundant, *failure, 0, *failure};
   }
   return first;
 }

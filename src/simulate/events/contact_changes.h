@@ -26,6 +26,7 @@ struct ContactChange {
   Kind kind = Kind::release;
   double fraction = 0;      // of the step, 0..1
   std::size_t contact = 0;  // index into Mechanism::contacts
+  double latest = 1;        // of the step: where another change comes, or where it has not been searched any more
 };
 
 /// The search for changes of active contacts within steps. Each contact has an event function for each kind of change,

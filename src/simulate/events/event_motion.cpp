@@ -270,17 +270,20 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
     keepStartDerivative(step);
     island_.integrate(method_.integrate, event.contact->fraction * whole);
   } else if (event.contact) {
-    // Where forces change so fast that the interpolant does not tell them, the step itself may have no such change.
+    // Where forces change so fast that the interpolant does not tell them, the step itself may have no such change, or
+    // only behind another one, which is searched for in a shorter step then.
     const double tolerance = EventTolerances::kEventFunction, fraction = event.contact->fraction;
+    const double last = std::min(latest, event.contact->latest * whole);
     const auto end = [&] {
-      return endStepAtEvent(island_, method_.integrate, {fraction * whole, latest, tolerance},
+      return endStepAtEvent(island_, method_.integrate, {fraction * whole, last, tolerance},
                             [&](const VectorX& state) { return contacts_.active().margin(*event.contact, state); });
     };
     const std::vector<ContactConstraint> unaimed = island_.assembly.mechanism.contacts;
     const bool isAimed = event.contact->kind == ContactChange::Kind::stick && contacts_.active().aimAtStop(fraction);
     double left = end();
     if (isAimed && left > tolerance) island_.assembly.mechanism.contacts = unaimed, left = end();
-    if (left > tolerance && latest == whole) event.contact.reset(), event.doubtful = fraction * whole;
+    if (left > tolerance && (last < latest || latest == whole))
+      event.contact.reset(), event.doubtful = fraction * whole;
   }
   if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
   return event;
