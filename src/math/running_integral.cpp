@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
+
+#include "math/elementary.h"
 
 namespace cradle {
 namespace {
@@ -20,7 +23,7 @@ MatrixX coefficientsOf(const MatrixX& values) {
   for (int k = 0; k <= kDegree; ++k)
     for (int j = 0; j <= kDegree; ++j)
       coefficients.col(k) +=
-          2.0 / kDegree * half(k) * half(j) * std::cos(j * k * std::numbers::pi / kDegree) * values.col(j);
+          2.0 / kDegree * half(k) * half(j) * cradle::cos(j * k * std::numbers::pi / kDegree) * values.col(j);
   return coefficients;
 }
 
@@ -48,7 +51,7 @@ void RunningIntegral::add(const std::function<VectorX(double)>& integrand, doubl
   const double middle = (from + to) / 2, half = (to - from) / 2;
   MatrixX values;
   for (int j = 0; j <= kDegree; ++j) {
-    const VectorX value = integrand(middle + half * std::cos(j * std::numbers::pi / kDegree));
+    const VectorX value = integrand(middle + half * cradle::cos(j * std::numbers::pi / kDegree));
     if (j == 0) values.resize(value.size(), kDegree + 1);
     values.col(j) = value;
   }
@@ -69,10 +72,13 @@ void RunningIntegral::add(const std::function<VectorX(double)>& integrand, doubl
 VectorX RunningIntegral::upTo(double place) const {
   const auto panel =
       std::find_if(panels_.begin(), panels_.end() - 1, [&](const Panel& one) { return place <= one.to; });
-  const double across = (2 * place - panel->from - panel->to) / (panel->to - panel->from);
-  const double angle = std::acos(std::clamp(across, -1.0, 1.0));
-  VectorX integral = panel->before;
-  for (int k = 0; k <= kDegree + 1; ++k) integral += std::cos(k * angle) * panel->coefficients.col(k);
+  const double x = (2 * place - panel->from - panel->to) / (panel->to - panel->from);
+  double before = 1, now = x;  // T_0, T_1
+  VectorX integral = panel->before + panel->coefficients.col(0);
+  for (int k = 1; k <= kDegree + 1; ++k) {
+    integral += now * panel->coefficients.col(k);
+    before = std::exchange(now, 2 * x * now - before);
+  }
   return integral;
 }
 

@@ -93,10 +93,12 @@ void IslandSolver::advance(double time) {
   if (mayNotGoOn()) changeMotion();
   const double before = island_.time;
   coordinates_.beginStep(island_.state);
-  if (auto* events = std::get_if<EventMotion>(&motion_))
+  if (auto* events = std::get_if<EventMotion>(&motion_)) {
     advance(time, *events);
-  else
+    if (!promiseEnd_ && events->offConstraintsFrom()) endPromiseAtDeadPoint(*events->offConstraintsFrom());
+  } else {
     advance(time, std::get<SteppedMotion>(motion_));
+  }
   const bool hasStepped = island_.step.time + island_.step.timeStep >= island_.time;
   coordinates_.endStep(island_.time - before, hasStepped ? island_.step.state : island_.state);
   // The step under way ends later than `time`: its interpolant is needed as it is.
@@ -143,6 +145,13 @@ void IslandSolver::endPromise(const EventMotion& events, double timeStep) {
       "{}: the accuracy asked is not promised from {:.6g} s on: {} ({}); contact is resolved every {:.3g} s {}",
       island_.scene.path, island_.time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene),
       timeStep, isVisual() ? "to the end" : "as long as that lasts"));
+}
+
+void IslandSolver::endPromiseAtDeadPoint(double time) {
+  promiseEnd_ = {time, "what ties bodies takes more than the accuracy out of one step, as near a dead point",
+                 island_.assembly.sceneBodies};
+  island_.log.warn(fmt::format("{}: the accuracy asked is not promised from {:.6g} s on: {} ({})", island_.scene.path,
+                               time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene)));
 }
 
 void IslandSolver::interpolateAt(double time, bool keepsConstraints) {

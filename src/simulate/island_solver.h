@@ -51,6 +51,7 @@ class IslandSolver {
   void advance(double time);
   void changeMotion();
   void endPromise(const EventMotion& events, double timeStep);
+  void endPromiseAtDeadPoint(double time);
   template <class Motion>
   static void advance(double time, Motion& motion);
   bool mayNotGoOn() const;

@@ -373,6 +373,7 @@ void EventMotion::projectState() {
   bool isTouched = false;
   if (!contacts_.active().empty() || solver_.hasConstraints()) {
     isTouched = !isSame(state, island_.step.state);
+    if (!offConstraintsFrom_ && isFarFromConstraints(state)) offConstraintsFrom_ = island_.time;
     bookProjection(island_.step.state, island_.assembly.mechanism, state);
   }
   if (solver_.hasConstraints()) requireConstraintsKept();
@@ -380,6 +381,14 @@ void EventMotion::projectState() {
     isTouched = isTouched || std::abs(orientation(state, body).squaredNorm() - 1) > EventTolerances::kUnitLength;
   if (isTouched) normalizeOrientations(state);
   isContinuous_ = !isTouched && !ropes_.hasLimits();
+}
+
+/// Whether projection to `state` has moved bodies by more than the accuracy, in a step with an error of a part of it.
+bool EventMotion::isFarFromConstraints(const VectorX& state) const {
+  const VectorX& stepped = island_.step.state;
+  const Eigen::Index count = state.size() - kLedgerSize;
+  const auto moved = (state - stepped).head(count).array().abs() / (1 + stepped.head(count).array().abs());
+  return moved.maxCoeff() > island_.scene.accuracy;
 }
 
 /// Ends the run where constraints cannot be kept, or leave no motion: their forces are without bound, and the bodies

@@ -37,6 +37,10 @@ class EventMotion {
   /// Whether the last step kept the bodies' constraints: its interpolant may be projected.
   bool keepsConstraints() const { return keepsConstraints_; }
 
+  /// s: the end of the first step that constraints were to move by more than the accuracy, if there is one. Near a dead
+  /// point, where they leave more than one motion, rounding decides which.
+  std::optional<double> offConstraintsFrom() const { return offConstraintsFrom_; }
+
   /// Contacts that were active over the last step.
   const std::vector<ContactConstraint>& contactsOfStep() const { return contactsOfStep_; }
 
@@ -81,6 +85,7 @@ class EventMotion {
   double projectedGap(const ImpactTime& impact, const VectorX& state);
   void project(VectorX& state);
   void projectState();
+  bool isFarFromConstraints(const VectorX& state) const;
   void requireConstraintsKept();
   bool makeChanges();
   void changeForces(const Event& event);
@@ -103,9 +108,10 @@ class EventMotion {
   ConstraintSolver solver_;
   EventRateLimit eventRateLimit_;
   VectorX tolerance_;
-  VectorX projected_;                  // scratch
-  double startConstraintError_ = 0;    // m or rad
-  double toleranceOfWork_ = INFINITY;  // J, of the last step
+  VectorX projected_;                         // scratch
+  double startConstraintError_ = 0;           // m or rad
+  double toleranceOfWork_ = INFINITY;         // J, of the last step
+  std::optional<double> offConstraintsFrom_;  // s
   std::optional<RunningIntegral> ledgerOfStep_;
   std::vector<int> tautRowsBefore_;  // of ropes, before an event
   std::vector<ContactConstraint> contactsOfStep_;

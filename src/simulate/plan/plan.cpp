@@ -235,7 +235,7 @@ Plan planOf(const Scene& scene) {
   for (IslandPlan& island : plan.islands) {
     choose(scene, island);
     island.promise = promiseOf(scene, island, reachable);
-    island.method.keepsPromise = island.promise.kind == Promise::Kind::kept || island.promise.isOfFewSpheres;
+    island.method.keepsPromise = island.promise.kind == Promise::Kind::kept || island.promise.eventsServe;
   }
   return plan;
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "constraints/disjoint_sets.h"
@@ -202,6 +203,27 @@ bool hasBilateral(const IslandPlan& island) {
                      [](const LinkIndex& link) { return link.kind != LinkKind::spring; });
 }
 
+/// Whether constraints close a loop of two moving bodies or more: a linkage, which may come to a dead point. What is
+/// fixed, and what is driven, counts as one body.
+bool isLinkage(const Scene& scene, const IslandPlan& island) {
+  const int fixed = static_cast<int>(scene.bodies.size());
+  const auto elementOf = [&](int body) {
+    return body != kWorld && scene.bodies[static_cast<std::size_t>(body)].motion == Motion::dynamic ? body : fixed;
+  };
+  std::set<std::pair<int, int>> pairs;
+  for (const LinkIndex& link : island.links) {
+    if (link.kind == LinkKind::spring) continue;
+    const auto [a, b] = anchorsOf(link, scene);
+    pairs.insert(std::minmax({elementOf(a.body), elementOf(b.body)}));
+  }
+  DisjointSets chains(scene.bodies.size() + 1);
+  for (const auto& [a, b] : pairs) {
+    if (chains.islandOf(a) == chains.islandOf(b)) return true;
+    chains.join(a, b);
+  }
+  return false;
+}
+
 int independentRows(const PossibleContacts& contacts) {
   const int ofABody = contacts.areRound && !contacts.hasFriction ? 3 : 6;  // spheres without friction do not rotate
   return std::min(contacts.rows, ofABody * static_cast<int>(contacts.movers.size()));
@@ -264,9 +286,8 @@ Promise notPromised(std::string reason) {
   return {Promise::Kind::none, {}, std::move(reason), false};
 }
 
-}  // namespace
-
-Promise promiseOf(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable) {
+/// The promise of an island but for dead points.
+Promise promiseOfContacts(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable) {
   const ChosenMethod& method = island.method;
   if (method.kind == MotionKind::pile)
     return notPromised(
@@ -281,6 +302,18 @@ Promise promiseOf(const Scene& scene, const IslandPlan& island, const ReachableP
   if (areFewSpheres(survey.found()) && !hasJoints(island) && island.driven.empty())
     return promiseOfFewSpheres(scene, survey.found());
   return {Promise::Kind::conditional, conditionsOf(scene, island, survey.found()), {}, false};
+}
+
+}  // namespace
+
+Promise promiseOf(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable) {
+  Promise promise = promiseOfContacts(scene, island, reachable);
+  if (promise.kind == Promise::Kind::none || island.method.isClosedForm() || !isLinkage(scene, island)) return promise;
+  if (promise.kind == Promise::Kind::kept) promise.eventsServe = true;
+  promise.kind = Promise::Kind::conditional;
+  promise.conditions.push_back(
+      {fmt::format("{} come slowly to no dead point", namesOfBodies(island.bodies, scene)), island.bodies});
+  return promise;
 }
 
 std::string namesOfBodies(const std::vector<int>& bodies, const Scene& scene) {

@@ -28,7 +28,7 @@ struct Promise {
   Kind kind = Kind::kept;
   std::vector<PromiseCondition> conditions;  // of a conditional one
   std::string reason;                        // why there is none
-  bool isOfFewSpheres = false;               // of contacts that events serve in any case, unless friction jams
+  bool eventsServe = false;                  // events serve all contacts that may come, unless friction jams
 };
 
 /// When and why a run gave up the accuracy asked, and the bodies that were the reason.

@@ -184,6 +184,23 @@ TEST(Promise, IsGivenUpInTheRunWithTimeReasonAndBodies) {
   EXPECT_THAT(run.takePromiseEnds(), IsEmpty());
 }
 
+// A loop of two moving bodies or more is a linkage, whatever closes it; two rods of one body, and trees, are none.
+TEST(Promise, ExceptsDeadPointsOfLinkages) {
+  const auto promiseOfRods = [](const std::string& rods) {
+    return describe(promiseOfOnly(bodyOf("a", kSphere, Vec3(0, 1, 0), R"("collision": "none")") +
+                                      bodyOf("b", kSphere, Vec3(1, 1, 0), R"("collision": "none")"),
+                                  R"(, "rods": [{"bodyA": "a", "anchorA": [0, 0, 0], "bodyB": "b",
+                                  "anchorB": [0, 0, 0]}, )" +
+                                      rods + "]"));
+  };
+  const auto rodTo = [](const char* body, double x) {
+    return fmt::format(R"({{"bodyA": "{}", "anchorA": [0, 0, 0], "anchorB": [{}, 2, 0]}})", body, x);
+  };
+  EXPECT_EQ(promiseOfRods(rodTo("a", 0) + ", " + rodTo("b", 1)), "promised while a, b come slowly to no dead point");
+  EXPECT_EQ(promiseOfRods(rodTo("a", 0)), "promised");
+  EXPECT_EQ(promiseOfRods(rodTo("a", 0) + ", " + rodTo("a", 1)), "promised");
+}
+
 TEST(Promise, ThatIsKeptSaysSoInTheTrajectory) {
   EXPECT_EQ(simulate(sceneOfBodies(spheres(2))).cost.promise,
             "s0, s1: promised while no contact of s0, s1 jams, or slides so slowly that its friction has no sure "
