@@ -148,7 +148,7 @@ void IslandSolver::endPromise(const EventMotion& events, double timeStep) {
 }
 
 void IslandSolver::endPromiseAtDeadPoint(double time) {
-  promiseEnd_ = {time, "what ties bodies takes more than the accuracy out of one step, as near a dead point",
+  promiseEnd_ = {time, "constraints take more than the accuracy out of one step, as near a dead point",
                  island_.assembly.sceneBodies};
   island_.log.warn(fmt::format("{}: the accuracy asked is not promised from {:.6g} s on: {} ({})", island_.scene.path,
                                time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene)));

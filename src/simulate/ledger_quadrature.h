@@ -13,8 +13,8 @@ namespace cradle {
 /// forces that the step has. `step` is as the integrator has left it.
 double toleranceOfWork(const ChosenMethod& method, const Mechanism& mechanism, const Step& step);
 
-/// What the ledger's rates along the interpolant give from a step's start up to fractions of it, to a tolerance (J).
-/// The step must be prepared (prepareInterpolant), and the equations have the forces that acted in it.
+/// The integral of the ledger's rates along the interpolant, from a step's start up to fractions of it, to a tolerance
+/// (J). The step must be prepared (prepareInterpolant), and the equations have the forces that acted in it.
 RunningIntegral integralOfLedger(EquationsOfMotion& equations, const Mechanism& mechanism, const Step& step,
                                  double tolerance);
 
