@@ -6,6 +6,9 @@
 //   open     if z'_n <= 0:                   z = 0
 //   sticking if |z'_t| <= mu z'_n:           u = 0
 //   sliding  else, with e = z'_t / |z'_t|:   z_t - mu z'_n e = 0 and u_n = 0.   (1)
+// Forces of a contact that slides already, in the unit direction d, have e = -d:
+//   open     if z'_n <= 0:                   z = 0
+//   sliding  else:                           z_t + mu z_n d = 0 and u_n = 0.        (2)
 
 #include "impact/delassus_operator.h"
 
@@ -47,6 +50,18 @@ inline NewtonRow newtonRow(const Vec3& z, const Vec3& u, double friction, double
   ofVelocity.topLeftCorner<2, 2>() = turning;
   ofVelocity.topRightCorner<2, 1>() = friction * e;
   row.value.head<2>() = z.head<2>() - friction * pressing * e;
+  return row;
+}
+
+/// The same by equation (2), of a contact that slides in `direction`.
+inline NewtonRow slidingRow(const Vec3& z, const Vec3& u, double friction, const Eigen::Vector2d& direction,
+                            double regular) {
+  NewtonRow row;
+  row.equation.ofImpulse = Mat3::Identity();
+  row.equation.ofImpulse.topRightCorner<2, 1>() = friction * direction;
+  row.equation.ofImpulse(2, 2) = regular;
+  row.equation.ofVelocity = Vec3::UnitZ() * Vec3::UnitZ().transpose();
+  row.value << z.head<2>() + friction * z.z() * direction, u.z();
   return row;
 }
 

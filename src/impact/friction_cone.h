@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/types.h"
@@ -26,6 +27,13 @@ inline Vec3 correctedVelocity(const Vec3& u, double friction) {
 /// only if it holds.
 inline Vec3 coulombResidual(const Vec3& z, const Vec3& u, double friction) {
   return z - projectOnCone(z - correctedVelocity(u, friction), friction);
+}
+
+/// The same for the law of a contact that slides already, in the unit direction `direction` (t1, t2): z_n >= 0,
+/// u_n >= 0, z_n u_n = 0 and z_t = -friction z_n direction.
+inline Vec3 slidingResidual(const Vec3& z, const Vec3& u, double friction, const Eigen::Vector2d& direction) {
+  const Eigen::Vector2d tangential = z.head<2>() + friction * z.z() * direction;
+  return {tangential.x(), tangential.y(), z.z() - std::max(0.0, z.z() - u.z())};
 }
 
 }  // namespace cradle

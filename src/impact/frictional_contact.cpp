@@ -47,13 +47,16 @@ constexpr int kProximalSteps = 3;
 /// A search for a solution, in the operator's scaled units; residuals and tolerances are in m/s.
 class Search {
  public:
-  Search(const DelassusOperator& op, const VectorX& free, const std::vector<double>& frictions, double tolerance);
+  Search(const DelassusOperator& op, const VectorX& free, const std::vector<double>& frictions, double tolerance,
+         std::vector<Eigen::Vector2d> directions = {});
 
   /// From `start`, which is moved to where it ends.
   ContactSolution run(WarmStart& start);
 
  private:
   double friction(Index contact) const { return contacts_.frictions[static_cast<std::size_t>(contact)]; }
+  bool slides(Index contact) const { return !directions_.empty() && !direction(contact).isZero(0); }
+  const Eigen::Vector2d& direction(Index contact) const { return directions_[static_cast<std::size_t>(contact)]; }
   VectorX velocitiesOf(const VectorX& z) const { return op_.multiply(z) + contacts_.free; }
   double residual(const VectorX& z, const VectorX& u) const;
   double rounding(const VectorX& z) const { return kProductRounding * op_.magnitude(z) / op_.scales.minCoeff(); }
@@ -72,6 +75,7 @@ class Search {
 
   const DelassusOperator& op_;
   ScaledContacts contacts_;
+  std::vector<Eigen::Vector2d> directions_;  // of contacts that slide already, zero of others; empty if none does
   SearchTolerances tolerances_;
   AdmmIterate iterate_;
   VectorX impulses_, velocities_;    // of the smallest residual so far
@@ -79,8 +83,12 @@ class Search {
   long iterations_ = 0;
 };
 
-Search::Search(const DelassusOperator& op, const VectorX& free, const std::vector<double>& frictions, double tolerance)
-    : op_(op), contacts_{free, frictions}, tolerances_(free.cwiseAbs().maxCoeff(), tolerance) {
+Search::Search(const DelassusOperator& op, const VectorX& free, const std::vector<double>& frictions, double tolerance,
+               std::vector<Eigen::Vector2d> directions)
+    : op_(op),
+      contacts_{free, frictions},
+      directions_(std::move(directions)),
+      tolerances_(free.cwiseAbs().maxCoeff(), tolerance) {
   for (Index i = 0; i < op.scales.size(); ++i) contacts_.free.segment<3>(3 * i) *= op.scales[i];
 }
 
@@ -88,7 +96,9 @@ Search::Search(const DelassusOperator& op, const VectorX& free, const std::vecto
 double Search::residual(const VectorX& z, const VectorX& u) const {
   double largest = 0;
   for (Index i = 0; i < op_.scales.size(); ++i) {
-    const Vec3 error = coulombResidual(z.segment<3>(3 * i), u.segment<3>(3 * i), friction(i));
+    const Vec3 impulse = z.segment<3>(3 * i), velocity = u.segment<3>(3 * i);
+    const Vec3 error = slides(i) ? slidingResidual(impulse, velocity, friction(i), direction(i))
+                                 : coulombResidual(impulse, velocity, friction(i));
     if (!error.allFinite()) return INFINITY;
     largest = std::max(largest, error.cwiseAbs().maxCoeff() / op_.scales[i]);
   }
@@ -113,7 +123,9 @@ bool Search::stepByNewton(Step kind, VectorX& z, VectorX& u) const {
   for (Index i = 0; i < op_.scales.size(); ++i) {
     ContactEquation& equation = equations[static_cast<std::size_t>(i)];
     if (equation.isOpen) continue;
-    const NewtonRow row = newtonRow(z.segment<3>(3 * i), u.segment<3>(3 * i), friction(i), kNewtonShift);
+    const Vec3 impulse = z.segment<3>(3 * i), velocity = u.segment<3>(3 * i);
+    const NewtonRow row = slides(i) ? slidingRow(impulse, velocity, friction(i), direction(i), kNewtonShift)
+                                    : newtonRow(impulse, velocity, friction(i), kNewtonShift);
     equation = row.equation;
     sides.segment<3>(3 * i) = -row.value;
   }
@@ -223,6 +235,7 @@ bool Search::find() {
   // From impulses of zero, Newton's method would share the loads of redundant contacts in an arbitrary way.
   const bool isWarm = iterate_.impulses.cwiseAbs().maxCoeff() > 0;
   if ((isWarm || !tolerances_.isRounding) && accept(tolerances_.solved)) return true;
+  if (!directions_.empty()) return false;
   int round = kFirstAdmmIterations;
   for (int trial = 0; trial < kMaxTrials; ++trial) {
     if (trial == tolerances_.interiorTrial) {
@@ -249,7 +262,7 @@ ContactSolution Search::run(WarmStart& start) {
   start = {impulses_, iterate_.velocities, iterate_.penalty};
   // Impulses end inside the cones exactly. With a tolerance asked for, the projection could cost velocities as much.
   for (Index i = 0; i < op_.scales.size() && tolerances_.isRounding; ++i)
-    impulses_.segment<3>(3 * i) = projectOnCone(impulses_.segment<3>(3 * i), friction(i));
+    if (!slides(i)) impulses_.segment<3>(3 * i) = projectOnCone(impulses_.segment<3>(3 * i), friction(i));
   solution.impulses = impulses_, solution.velocities = velocitiesOf(impulses_);
   for (Index i = 0; i < op_.scales.size(); ++i) {
     solution.impulses.segment<3>(3 * i) *= op_.scales[i], solution.velocities.segment<3>(3 * i) /= op_.scales[i];
@@ -333,6 +346,12 @@ ContactSolution solveFrictionalContact(const MatrixX& G, const VectorX& g, const
   // A residual above the free velocities is that of impulses that wedge a body: they grow without bound.
   ContactSolution smooth = frictionless();
   return smooth.residual < solution.residual ? smooth : solution;
+}
+
+ContactSolution solveSlidingContact(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
+                                    const std::vector<Eigen::Vector2d>& directions, const VectorX& near) {
+  WarmStart start{near, VectorX::Zero(g.size()), 0};
+  return Search(operatorOf(G), g, frictions, 0, directions).run(start);
 }
 
 }  // namespace cradle

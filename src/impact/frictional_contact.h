@@ -35,6 +35,14 @@ struct WarmStart {
 ContactSolution solveFrictionalContact(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
                                        const VectorX& near = {});
 
+/// The same for contacts some of which slide already: forces and accelerations, in place of impulses and velocities.
+/// Those with a direction that is not zero, of unit length, have the friction z_t = -friction z_n direction; the others
+/// obey Coulomb's law. Newton's method from the forces `near`: from those that are as symmetric as the problem it leads
+/// to such a solution, where friction has several. Not converged where there is none (friction jams, P. Painleve,
+/// 1895), or where `near` is too far from it.
+ContactSolution solveSlidingContact(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
+                                    const std::vector<Eigen::Vector2d>& directions, const VectorX& near);
+
 /// The same problem of any form of G, to a residual of `tolerance` (m/s), or of ten times that where the first methods
 /// fail; if nothing leads there, the best that was found. Leaves in `start` where it ended.
 ContactSolution solveFrictionalContact(const DelassusOperator& G, const VectorX& g,

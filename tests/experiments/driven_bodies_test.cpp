@@ -24,6 +24,7 @@ Trajectory runDriven(double duration, double accuracy, const std::string& bodies
   return simulate(sceneWith(fmt::format(R"("duration": {}, "accuracy": {}, "output": {{"framesPerSecond": 100}},
     "materials": {{"m": {{"restitution": 0.5, "staticFriction": 0.4, "dynamicFriction": 0.3}},
     "grip": {{"restitution": 0, "staticFriction": 1, "dynamicFriction": 1}},
+    "half": {{"restitution": 0, "staticFriction": 0.5, "dynamicFriction": 0.5}},
     "slips": {{"restitution": 0, "staticFriction": 0.2, "dynamicFriction": 0.2}}}}, {}
     "bodies": [{}])",
                                         duration, accuracy, more, bodies)));
@@ -291,6 +292,30 @@ TEST(DrivenBodies, TiltBoxesOnBoxes) {
       const Vec3 end = moved.frames.back().states[2].position;
       if (place.isZero(0)) place = end;
       EXPECT_LT((end - place).norm(), 10 * accuracy) << degrees << " " << accuracy;
+    }
+  }
+}
+
+/// A step rises under a plank whose end strikes the ground: both its corners and both points on the step's edge have
+/// impulses, and slide. Several friction forces fit there; a plank that is its own mirror image at z = 0 stays so.
+TEST(DrivenBodies, StepThatRisesTurnsAPlankStraight) {
+  for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+    const Trajectory moved = runDriven(0.04, accuracy, R"(
+      {"name": "floor", "shape": {"box": {"size": [4, 0.1, 1]}}, "position": [0, -0.05, 0], "motion": "static",
+       "material": "half"},
+      {"name": "step", "shape": {"box": {"size": [0.2, 0.2, 1]}}, "position": [0.22, -0.09643307392071382, 0],
+       "motion": "driven", "linearVelocity": [0, 0.7379037850781669, 0], "material": "half"},
+      {"name": "plank", "shape": {"box": {"size": [0.5, 0.1, 0.3]}},
+       "position": [0.41275972558574037, 0.052605155509809584, 0],
+       "orientation": {"axis": [0, 0, 1], "angleDegrees": -0.5957138542517577},
+       "linearVelocity": [0.10877277208966601, 0.5321514035707416, 0],
+       "angularVelocity": [0, 0, -2.218121929621737], "material": "half"})");
+    EXPECT_THAT(eventsOf(moved, EventKind::impact), testing::SizeIs(testing::Ge(4)));
+    for (const Frame& frame : moved.frames) {
+      const BodyState& plank = frame.states[1];
+      // What is left of the accuracy in positions of 1e-2 s becomes speeds.
+      EXPECT_LT(std::abs(plank.linearVelocity.z()), 100 * accuracy) << accuracy;
+      EXPECT_LT(plank.angularVelocity.head<2>().norm(), 100 * accuracy) << accuracy;
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "impact/friction_cone.h"
+#include "math/rotation.h"
 
 namespace cradle {
 namespace {
@@ -182,6 +183,60 @@ TEST(ConeProblem, WhatIsMirrorSymmetricStaysSo) {
     const Vec3 image = solution.impulses.segment<3>(3 * (corner + 2)).cwiseProduct(Vec3(1, -1, 1));
     EXPECT_LT((solution.impulses.segment<3>(3 * corner) - image).norm(), 1e-7);
   }
+}
+
+/// A plank of 0.5 x 0.3 x 0.1 m and 15 kg that an edge at x = -0.09 carries under its lower face, while the corners of
+/// its end at x = 0.25 stand on the ground, with a tilt of 0.01 down to this end; axes t1 = x, t2 = y, n = z. Contacts
+/// 1 and 3 are the images of 0 and 2.
+Rows plankOnTwoSupports(double friction) {
+  Rows rows{MatrixX(12, 6), VectorX(6), VectorX(6), std::vector<double>(4, friction)};
+  const double mass = 15, a = 0.5, b = 0.3, c = 0.1;
+  rows.inverseMasses << Vec3::Constant(1 / mass),
+      12 / mass * Vec3(1 / (b * b + c * c), 1 / (a * a + c * c), 1 / (a * a + b * b));
+  rows.velocities << 0, 0, -9.81, 0, 0, 0;
+  const Vec3 arms[] = {{0.25, -0.15, -0.05}, {0.25, 0.15, -0.05}, {-0.09, -0.15, -0.05}, {-0.09, 0.15, -0.05}};
+  const Mat3 tilt = rotationAbout(Vec3::UnitY(), 0.01).toRotationMatrix();
+  for (Eigen::Index row = 0; row < 12; ++row) {
+    const Vec3 direction = row < 6 ? Vec3(Vec3::Unit(row % 3)) : Vec3(tilt.col(row % 3));
+    rows.j.row(row) << direction.transpose(), arms[row / 3].cross(direction).transpose();
+  }
+  return rows;
+}
+
+// The end slides back on the ground, and the plank forward over the edge. Rounds of friction from normal forces, and
+// these from friction, leave the mirror image; the forces that are their own image are a solution too.
+TEST(SlidingContact, WhatIsMirrorSymmetricStaysSo) {
+  const Rows plank = plankOnTwoSupports(0.5);
+  const Eigen::Vector2d forward = Eigen::Vector2d::UnitX();
+  const std::vector<Eigen::Vector2d> directions{-forward, -forward, forward, forward};
+  const VectorX start = solveFrictionalContact(plank.matrix(), plank.free(), std::vector<double>(4, 0.0)).impulses;
+  const ContactSolution solution =
+      solveSlidingContact(plank.matrix(), plank.free(), plank.frictions, directions, start);
+  ASSERT_TRUE(solution.converged);
+  const VectorX after = plank.velocitiesAfter(solution);
+  EXPECT_LT(Vec3(after[1], after[3], after[5]).norm(), 1e-10);  // a residual of 1e-12 of gravity, over arms of 0.1 m
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    const Vec3 force = solution.impulses.segment<3>(3 * i);
+    EXPECT_GE(force.z(), 0);
+    EXPECT_NEAR(force.x(), i < 2 ? 0.5 * force.z() : -0.5 * force.z(), 1e-10);
+    EXPECT_NEAR(force.y(), 0, 1e-10);
+    EXPECT_GE(solution.velocities[3 * i + 2], -1e-10);
+    EXPECT_NEAR(force.z() * solution.velocities[3 * i + 2], 0, 1e-9);
+  }
+}
+
+// A rod that leans forward under 45 degrees and slides on its lower end with mu = 3: friction presses it down more than
+// the normal force lifts it, 1 + 3 cos^2 - 3 mu sin cos < 0 (P. Painleve, 1895).
+TEST(SlidingContact, ThatJamsIsSaid) {
+  Rows rod{MatrixX(3, 3), Vec3(1, 1, 12), Vec3(0, -9.81, 0), {3.0}};  // x, up, angle; of 1 kg and 1 m
+  const double arm = 0.5 * std::sqrt(0.5);
+  rod.j << 1, 0, arm, 0, 0, 0, 0, 1, arm;
+  const std::vector<Eigen::Vector2d> forward{Eigen::Vector2d::UnitX()}, back{-Eigen::Vector2d::UnitX()};
+  const VectorX start = Vec3(0, 0, 1);
+  EXPECT_FALSE(solveSlidingContact(rod.matrix(), rod.free(), {3.0}, forward, start).converged);
+  const ContactSolution pulled = solveSlidingContact(rod.matrix(), rod.free(), {3.0}, back, start);
+  ASSERT_TRUE(pulled.converged);
+  EXPECT_NEAR(pulled.impulses[2], 9.81 / (1 + 12 * arm * arm * (1 + 3)), 1e-12);
 }
 
 /// A problem as contact_problems.txt has it.

@@ -187,9 +187,6 @@ struct EventTolerances {
   // [0, 0.01]
   static constexpr double kInfeasibleRatio = 10 * kStillRatio;  // of the largest acceleration
 
-  // So well the friction of contacts that slide fits their normal forces. [0, 0.01]
-  static constexpr double kFrictionConverged = 1e-10;  // of the largest normal force
-
   // Less is none, and rows depend on each other. [0, 1e-4]; with 0.1, too many contacts at once are served.
   static constexpr double kRankRatio = 1e-9;  // of the largest pivot
 
