@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/invariants.h"
 #include "math/box_quadratic.h"
 #include "math/rotation.h"
 
@@ -17,9 +18,9 @@ constexpr double kSameMotors = 1e-9;
 // Of the response of a joint's bodies alone: with less, stops or contacts leave the coordinate no motion, and its motor
 // has nothing to do.
 constexpr double kBlocked = 1e-9;
-// Of the response: so much is left of what motors ask in a step, and lets the weaker of two that contradict each other
-// come to its limit.
-constexpr double kContradicting = 1e-6;
+// Of the terms of accelerations: targets that contradict each other by less do so by rounding, which is 1e-16 of them
+// times their condition numbers.
+constexpr double kContradicting = 1e-8;
 
 /// World derivative of the angular velocity of a body without torque: body frame I w' = -w x I w. The derivative of w
 /// is the same vector in both frames, since w x w = 0.
@@ -103,7 +104,7 @@ void EquationsOfMotion::applyMotors(const VectorX& state, VectorX& derivative) {
   const std::vector<JointMotor>& motors = mechanism_.motors;
   const bool areKnown = isWithoutContacts_ && motorForces_.size() == std::ssize(motors);
   if (motorForces_.size() != std::ssize(motors)) motorForces_.setZero(std::ssize(motors));
-  motorMobilities_.setZero(std::ssize(motors));
+  motorMobilities_.setZero(std::ssize(motors)), motorContradictions_.setZero(std::ssize(motors));
   std::vector<ConstraintBlock> rows;
   std::vector<std::size_t> holding;
   for (std::size_t i = 0; i < motors.size(); ++i) {
@@ -160,7 +161,25 @@ EquationsOfMotion::MotorResponse EquationsOfMotion::responseOf(const std::vector
   std::vector<ConstraintBlock> held;
   for (const std::size_t motor : holding) held.push_back(rows[motor]);
   leaveOutBlocked(held, response.perForce);
+  response.scale = scaleOf(holding, rows, state, derivative) + response.free.cwiseAbs().maxCoeff();
   return response;
+}
+
+/// A bound on the accelerations of coordinates that those in `derivative` cause, whatever constraints do with them: no
+/// more than sqrt(J M^-1 J^T) |a| with the norm |a|^2 = a^T M a (Cauchy, Schwarz). And what keeps velocities.
+double EquationsOfMotion::scaleOf(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows,
+                                  const VectorX& state, const VectorX& derivative) const {
+  VectorX moving = state;
+  const Eigen::Index poses = poseComponents(state);
+  moving.tail(state.size() - poses) = derivative.tail(state.size() - poses);
+  const double norm = std::sqrt(2 * kineticEnergy(mechanism_.bodies, moving));
+  double scale = 0;
+  for (const std::size_t motor : holding) {
+    const double mobility = mobilityOf(rows[motor], mechanism_.bodies, frames_);
+    scale = std::max(scale,
+                     std::sqrt(mobility) * norm + kMotorRelaxation * std::abs(mechanism_.motors[motor].targetVelocity));
+  }
+  return scale;
 }
 
 /// Sets the responses of coordinates to zero to which nothing leaves any motion.
@@ -205,7 +224,8 @@ VectorX EquationsOfMotion::possibleForces(const std::vector<std::size_t>& holdin
   }
   if (atTarget.empty()) return forces;
   const VectorX accelerations = response.free + response.perForce * forces;
-  const VectorX found = boxMinimum(response.perForce(atTarget, atTarget), -accelerations(atTarget), limits(atTarget));
+  const VectorX found = boxMinimum(response.perForce(atTarget, atTarget), -accelerations(atTarget), limits(atTarget),
+                                   kContradicting * response.scale);
   for (std::size_t k = 0; k < atTarget.size(); ++k) forces[atTarget[k]] = found[static_cast<Eigen::Index>(k)];
   return forces;
 }
@@ -254,6 +274,16 @@ void EquationsOfMotion::keepTargets(VectorX& state) {
   state += responses * leastForces(perImpulse, Eigen::Map<const VectorX>(missing.data(), count));
 }
 
+/// What the accelerations by these forces lack of those `wanted`, in units of ten times what boxMinimum, by which such
+/// contradictions are resolved, takes for rounding; 0 for coordinates to which nothing leaves any motion.
+VectorX EquationsOfMotion::contradictionOf(const MotorResponse& response, const VectorX& forces,
+                                           const VectorX& wanted) {
+  VectorX left = (response.perForce * forces - wanted).cwiseAbs();
+  const VectorX terms = response.perForce.cwiseAbs() * forces.cwiseAbs();
+  left /= 10 * kContradicting * (response.scale + terms.maxCoeff());
+  return (response.perForce.diagonal().array() != 0).select(left, 0.0);
+}
+
 /// Adds the forces of motors that hold: those with which their coordinates' accelerations, after all constraints and
 /// contacts, are zero, or take back an error of the velocity; in steps of a fixed length, and where it is asked what
 /// they can have, within all they have.
@@ -261,23 +291,23 @@ void EquationsOfMotion::hold(const std::vector<std::size_t>& holding, const std:
                              const VectorX& state, VectorX& derivative) {
   const MotorResponse response = responseOf(holding, rows, state, derivative);
   const VectorX missing = missingVelocities(holding, rows, state);
-  VectorX forces;
+  VectorX forces, left = VectorX::Zero(missing.size());
   if (asksPossible_) {
     forces = possibleForces(holding, response, missing);
   } else if (motorTimeStep_ > 0) {
-    // Targets that contradict each other: the weaker motors give all they have.
-    MatrixX perForce = response.perForce;
-    perForce.diagonal() *= 1 + kContradicting;
     const VectorX limits = limitsOf(holding);
-    forces = boxMinimum(perForce, missing / motorTimeStep_ - response.free, limits);
+    forces = boxMinimum(response.perForce, missing / motorTimeStep_ - response.free, limits,
+                        kContradicting * response.scale);
     for (Eigen::Index k = 0; k < forces.size(); ++k)  // against a stop
-      if (perForce(k, k) == 0 && missing[k] != 0) forces[k] = std::copysign(limits[k], missing[k]);
+      if (response.perForce(k, k) == 0 && missing[k] != 0) forces[k] = std::copysign(limits[k], missing[k]);
   } else {
     forces = leastForces(response.perForce, kMotorRelaxation * missing - response.free);
+    left = contradictionOf(response, forces, kMotorRelaxation * missing - response.free);
   }
   for (std::size_t k = 0; k < holding.size(); ++k) {
     const Eigen::Index at = static_cast<Eigen::Index>(k), motor = static_cast<Eigen::Index>(holding[k]);
     motorForces_[motor] = forces[at], motorMobilities_[motor] = response.perForce(at, at);
+    motorContradictions_[motor] = left[at];
     addForce(rows[holding[k]], forces[at], state, derivative);
   }
 }

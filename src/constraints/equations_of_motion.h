@@ -56,6 +56,11 @@ class EquationsOfMotion {
   const VectorX& motorForces() const { return motorForces_; }
   const VectorX& motorMobilities() const { return motorMobilities_; }
 
+  /// By how much motors that hold miss the accelerations that keep their targets, at the last evaluation that found
+  /// forces, where wheels or cranks depend on each other: above 1 their targets contradict each other, and some of the
+  /// motors have to push with all their force.
+  const VectorX& motorContradictions() const { return motorContradictions_; }
+
   /// The forces (N or N m) that motors with a target velocity can have at `time` (s), in their order, whatever their
   /// mode: those whose joints are off the target push with all they have; the others, all together, give what keeps
   /// their joints at it, or all they have where that does not suffice. Off is what misses it by more than settledSpeed,
@@ -98,15 +103,19 @@ class EquationsOfMotion {
   struct MotorResponse {
     VectorX free;      // rad/s^2 or m/s^2: accelerations without their forces
     MatrixX perForce;  // what 1 of each force adds
+    double scale = 0;  // rad/s^2 or m/s^2: bound on the terms of `free`, of which 1e-16 and more is its rounding
   };
   MotorResponse responseOf(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows,
                            const VectorX& state, const VectorX& derivative);
+  double scaleOf(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows,
+                 const VectorX& state, const VectorX& derivative) const;
   void leaveOutBlocked(const std::vector<ConstraintBlock>& rows, MatrixX& perForce) const;
   VectorX missingVelocities(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows,
                             const VectorX& state) const;
   VectorX limitsOf(const std::vector<std::size_t>& holding) const;
   VectorX possibleForces(const std::vector<std::size_t>& holding, const MotorResponse& response,
                          const VectorX& missing) const;
+  static VectorX contradictionOf(const MotorResponse& response, const VectorX& forces, const VectorX& wanted);
   void hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows, const VectorX& state,
             VectorX& derivative);
   void addForce(const ConstraintBlock& row, double force, const VectorX& state, VectorX& derivative) const;
@@ -121,7 +130,7 @@ class EquationsOfMotion {
   ConstraintSolver solver_;  // without contacts
   ContactSolver contactSolver_;
   VectorX multipliers_;
-  VectorX motorForces_, motorMobilities_;
+  VectorX motorForces_, motorMobilities_, motorContradictions_;
   bool isWithoutContacts_ = false;  // in the evaluation under way
   double motorTimeStep_ = 0;        // s; 0: motors hold without a limit
   bool asksPossible_ = false;       // what motors can give, whatever their modes

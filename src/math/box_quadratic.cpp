@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kDependent = 1e-9;  // of the largest pivot: rows that differ by less depend on each other
 constexpr double kRounding = 1e-12;  // of what a gradient is summed from: a smaller one is zero
+// The same, for one that dependent rows leave: it is where they contradict each other.
+constexpr double kContradiction = 1e-8;
 
 /// Which numbers are at a limit: -1, 1, or 0 for those that are free.
 using Active = std::vector<int>;
@@ -30,16 +32,38 @@ VectorX freeMinimum(const MatrixX& A, const VectorX& b, const VectorX& x, const 
   return found;
 }
 
-/// Where to go from `x`: to `stationary`, unless x^T A x / 2 - b^T x is greatest there, on the line between them. Then
-/// it falls without end on the other side of `x`, as far as limits let it.
-VectorX aimFrom(const MatrixX& A, const VectorX& x, const VectorX& stationary, const VectorX& limits) {
-  const VectorX way = stationary - x;
-  const VectorX size = way.cwiseAbs();
-  if (way.dot(A * way) >= -kRounding * size.dot(A.cwiseAbs() * size)) return stationary;
+/// The sizes of the terms of the gradient A x - b.
+VectorX gradientScale(const MatrixX& A, const VectorX& b, const VectorX& x) {
+  return A.cwiseAbs() * x.cwiseAbs() + b.cwiseAbs();
+}
+
+/// Against the gradient at `stationary` of the numbers that are free, which dependent rows of A leave there; zero if it
+/// is rounding.
+VectorX contradictionAt(const MatrixX& A, const VectorX& b, const VectorX& stationary, const Active& active,
+                        double rounding) {
+  VectorX left = b - A * stationary;
+  for (std::size_t i = 0; i < active.size(); ++i)
+    if (active[i] != 0) left[static_cast<Eigen::Index>(i)] = 0;
+  const double most = std::max(rounding, kContradiction * gradientScale(A, b, stationary).maxCoeff());
+  return left.cwiseAbs().maxCoeff() > most ? left : VectorX(VectorX::Zero(left.size()));
+}
+
+/// Where to go from `x`: to the minimum over the numbers that are free. Where x^T A x / 2 - b^T x falls without end, as
+/// far as limits let it: along what dependent rows leave of the gradient, or, where it is greatest on the line to the
+/// stationary point, on the other side of `x`.
+VectorX aimFrom(const MatrixX& A, const VectorX& b, const VectorX& x, const Active& active, const VectorX& limits,
+                double rounding) {
+  const VectorX stationary = freeMinimum(A, b, x, active);
+  VectorX way = contradictionAt(A, b, stationary, active, rounding);
+  if (way.isZero(0)) {
+    way = x - stationary;
+    const VectorX size = way.cwiseAbs();
+    if (way.dot(A * way) >= -kRounding * size.dot(A.cwiseAbs() * size)) return stationary;
+  }
   double far = 0;
   for (Eigen::Index i = 0; i < way.size(); ++i)
-    if (way[i] != 0) far = std::max(far, 2 * limits[i] / size[i]);
-  return x - 2 * far * way;
+    if (way[i] != 0) far = std::max(far, 2 * limits[i] / std::abs(way[i]));
+  return x + 2 * far * way;
 }
 
 /// Goes from `x` towards `aim` as far as limits let it; where one stops it, that is active from then on. True if none
@@ -64,7 +88,7 @@ bool approach(const VectorX& aim, const VectorX& limits, VectorX& x, Active& act
 /// Frees the number at a limit whose gradient points inwards most. False if there is none.
 bool release(const MatrixX& A, const VectorX& b, const VectorX& limits, const VectorX& x, Active& active) {
   const VectorX gradient = A * x - b;
-  const VectorX scale = A.cwiseAbs() * x.cwiseAbs() + b.cwiseAbs();
+  const VectorX scale = gradientScale(A, b, x);
   double most = 0;
   std::size_t released = active.size();
   for (std::size_t i = 0; i < active.size(); ++i) {
@@ -78,16 +102,32 @@ bool release(const MatrixX& A, const VectorX& b, const VectorX& limits, const Ve
   return true;
 }
 
+/// Shares what dependent rows leave open with the numbers that came to a limit on the way and have nothing to do there:
+/// x becomes the least such minimum, if it is within the limits.
+void share(const MatrixX& A, const VectorX& b, const VectorX& limits, VectorX& x, Active active) {
+  const VectorX gradient = A * x - b;
+  const VectorX scale = gradientScale(A, b, x);
+  bool isAny = false;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (active[i] == 0 || std::abs(gradient[at]) > kDependent * scale[at]) continue;
+    active[i] = 0, isAny = true;
+  }
+  if (!isAny) return;
+  const VectorX least = freeMinimum(A, b, x, active);
+  if ((least.cwiseAbs().array() <= limits.array()).all()) x = least;
+}
+
 }  // namespace
 
-VectorX boxMinimum(const MatrixX& A, const VectorX& b, const VectorX& limits) {
+VectorX boxMinimum(const MatrixX& A, const VectorX& b, const VectorX& limits, double rounding) {
   VectorX x = VectorX::Zero(b.size());
   Active active(static_cast<std::size_t>(b.size()), 0);
   const int most = 20 + 10 * static_cast<int>(b.size());  // more are cycles of a matrix that is not quite symmetric
   for (int change = 0; change < most; ++change)
-    if (approach(aimFrom(A, x, freeMinimum(A, b, x, active), limits), limits, x, active) &&
-        !release(A, b, limits, x, active))
+    if (approach(aimFrom(A, b, x, active, limits, rounding), limits, x, active) && !release(A, b, limits, x, active))
       break;
+  share(A, b, limits, x, active);
   return x;
 }
 

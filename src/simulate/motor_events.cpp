@@ -38,8 +38,9 @@ double MotorEvents::marginAt(std::size_t index, double time, const VectorX& stat
   if (motor.mode == JointMotor::Mode::pushes)
     return kPastTarget + motor.sign * (motor.targetVelocity - velocity(index, state)) / scales_[index];
   island_.equations.evaluate(time, state, derivative_);
-  return (motor.maxForce - std::abs(island_.equations.motorForces()[static_cast<Eigen::Index>(index)])) /
-         motor.maxForce;
+  const auto at = static_cast<Eigen::Index>(index);
+  return std::min((motor.maxForce - std::abs(island_.equations.motorForces()[at])) / motor.maxForce,
+                  1 - island_.equations.motorContradictions()[at]);
 }
 
 double MotorEvents::margin(const MotorChange& change, const VectorX& state) {

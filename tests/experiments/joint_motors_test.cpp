@@ -700,5 +700,46 @@ TEST(JointMotors, MotorsOfACarComeToTheirTargetsTogether) {
   }
 }
 
+/// A car rolls over the edge of a table at the velocity that four motors hold. Its front wheels turn about the edge,
+/// and the targets of front and rear contradict each other from then on: two motors push with all they have, and the
+/// others hold against them, left and right alike, whatever the accuracy.
+TEST(JointMotors, TargetsOfACarContradictEachOtherAtAnEdge) {
+  std::string bodies = R"({"name": "table", "material": "rubber", "shape": {"box": {"size": [3, 0.5, 2]}},
+       "position": [0, -0.25, 0], "motion": "static"},
+      {"name": "chassis", "material": "body", "shape": {"box": {"size": [0.8, 0.12, 0.36]}}, "position": [0, 0.16, 0]})",
+              hinges;
+  for (const double x : {0.28, -0.28})
+    for (const double z : {0.26, -0.26}) {
+      bodies += fmt::format(R"(, {{"name": "w{0}{1}", "material": "rubber", "position": [{0}, 0.1, {1}],
+          "shape": {{"cylinder": {{"radius": 0.1, "length": 0.1}}}},
+          "orientation": {{"axis": [1, 0, 0], "angleDegrees": 90}}}})",
+                            x, z);
+      hinges += fmt::format(R"({0}{{"bodyA": "w{1}{2}", "bodyB": "chassis", "anchorB": [{1}, -0.06, {2}],
+          "axis": [0, 1, 0], "motor": {{"targetVelocity": -8, "maxTorque": 1}}}})",
+                            hinges.empty() ? "" : ", ", x, z);
+    }
+  Vec3 place = Vec3::Zero();
+  for (const double accuracy : {1e-8, 1e-6, 1e-4}) {
+    const Trajectory moved = runMotor(1.85, accuracy, bodies, R"("materials": {"body": {"density": 300},
+        "rubber": {"density": 900, "staticFriction": 0.6, "dynamicFriction": 0.6, "restitution": 0}},
+        "hinges": [)" + hinges + "]");
+    int contradicting = 0;
+    for (const Frame& frame : moved.frames) {
+      double most = 0;
+      for (const JointState& joint : frame.joints) {
+        EXPECT_LE(std::min(std::abs(joint.velocity + 8), std::abs(joint.force + 1)), 1e-6) << frame.time;
+        most = std::max(most, std::abs(joint.velocity + 8));
+      }
+      EXPECT_NEAR(frame.joints[0].force, frame.joints[1].force, 1e-6) << frame.time;
+      EXPECT_NEAR(frame.joints[2].force, frame.joints[3].force, 1e-6) << frame.time;
+      contradicting += frame.time > 1.7 && most > 0.01;
+    }
+    EXPECT_GT(contradicting, 2);
+    const Vec3 end = moved.frames.back().states[0].position;
+    if (accuracy == 1e-8) place = end;
+    EXPECT_LT((end - place).norm(), 10 * accuracy) << accuracy;
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -32,7 +32,7 @@ TEST(BoxMinimum, HoldsItsConditions) {
       const MatrixX A = root * root.transpose() + 0.01 * MatrixX::Identity(size, size);
       const VectorX b = VectorX::NullaryExpr(size, [&] { return 3 * normal(random); });
       const VectorX limits = VectorX::NullaryExpr(size, [&] { return std::abs(normal(random)); });
-      expectMinimum(A, b, limits, boxMinimum(A, b, limits), 1e-9 * b.norm() * A.norm());
+      expectMinimum(A, b, limits, boxMinimum(A, b, limits, 0), 1e-9 * b.norm() * A.norm());
     }
 }
 
@@ -47,7 +47,7 @@ TEST(BoxMinimum, HoldsItsConditionsWhereCurvatureIsNegative) {
       const MatrixX A = any + any.transpose();
       const VectorX b = VectorX::NullaryExpr(size, [&] { return 3 * normal(random); });
       const VectorX limits = VectorX::NullaryExpr(size, [&] { return std::abs(normal(random)); });
-      expectMinimum(A, b, limits, boxMinimum(A, b, limits), 1e-9 * b.norm() * A.norm());
+      expectMinimum(A, b, limits, boxMinimum(A, b, limits, 0), 1e-9 * b.norm() * A.norm());
     }
 }
 
@@ -55,14 +55,30 @@ TEST(BoxMinimum, HoldsItsConditionsWhereCurvatureIsNegative) {
 TEST(BoxMinimum, SharesWhatIsNotDetermined) {
   const MatrixX A = MatrixX::Ones(4, 4);
   const VectorX b = VectorX::Constant(4, 8);
-  EXPECT_LT((boxMinimum(A, b, VectorX::Constant(4, 9)) - VectorX::Constant(4, 2)).norm(), 1e-12);
-  EXPECT_LT((boxMinimum(A, b, Eigen::Vector4d(9, 9, 0.5, 9)) - Eigen::Vector4d(2.5, 2.5, 0.5, 2.5)).norm(), 1e-12);
-  EXPECT_LT((boxMinimum(A, b, VectorX::Constant(4, 1)) - VectorX::Constant(4, 1)).norm(), 1e-12);
+  EXPECT_LT((boxMinimum(A, b, VectorX::Constant(4, 9), 0) - VectorX::Constant(4, 2)).norm(), 1e-12);
+  EXPECT_LT((boxMinimum(A, b, Eigen::Vector4d(9, 9, 0.5, 9), 0) - Eigen::Vector4d(2.5, 2.5, 0.5, 2.5)).norm(), 1e-12);
+  EXPECT_LT((boxMinimum(A, b, VectorX::Constant(4, 1), 0) - VectorX::Constant(4, 1)).norm(), 1e-12);
+}
+
+/// Two of four that share one load are to give more of the sum than the others, which no share does: they give all they
+/// have, and the others share what is left. A contradiction by rounding is none.
+TEST(BoxMinimum, OfAContradictionIsAtItsLimits) {
+  const MatrixX A = 0.7 * MatrixX::Ones(4, 4);
+  const auto asking = [](double more) { return Eigen::Vector4d(1.4 + more, 1.4, 1.4 + more, 1.4); };
+  for (const double more : {1e-3, 0.1}) {
+    // The sum of all four that those hold who are within their limits is what they ask over 0.7.
+    const VectorX first = boxMinimum(A, asking(more), VectorX::Constant(4, 3), 1e-6);
+    EXPECT_LT((first - Eigen::Vector4d(3, -2, 3, -2)).norm(), 1e-9) << more;
+    const double rest = (1.4 - more) / 0.7 / 2 - 3;
+    const VectorX second = boxMinimum(A, asking(-more), VectorX::Constant(4, 3), 1e-6);
+    EXPECT_LT((second - Eigen::Vector4d(rest, 3, rest, 3)).norm(), 1e-9) << more;
+  }
+  EXPECT_LT((boxMinimum(A, asking(1e-7), VectorX::Constant(4, 3), 1e-6) - VectorX::Constant(4, 0.5)).norm(), 1e-6);
 }
 
 /// What nothing moves has nothing to do.
 TEST(BoxMinimum, OfNothingIsNothing) {
-  EXPECT_EQ(boxMinimum(MatrixX::Zero(2, 2), Eigen::Vector2d(0, 0), Eigen::Vector2d(3, 3)).norm(), 0);
+  EXPECT_EQ(boxMinimum(MatrixX::Zero(2, 2), Eigen::Vector2d(0, 0), Eigen::Vector2d(3, 3), 0).norm(), 0);
 }
 
 }  // namespace

@@ -6,11 +6,6 @@
 
 #include "simulate/events/sliding_friction.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "simulate/events/event_tolerances.h"
-
 namespace cradle {
 namespace {
 
