@@ -43,4 +43,13 @@ int DisjointSets::islandOf(int body) const {
   return body;
 }
 
+bool closeALoop(const std::set<std::pair<int, int>>& pairs, std::size_t elements) {
+  DisjointSets chains(elements);
+  for (const auto& [a, b] : pairs) {
+    if (chains.islandOf(a) == chains.islandOf(b)) return true;
+    chains.join(a, b);
+  }
+  return false;
+}
+
 }  // namespace cradle

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "dynamics/rigid_body.h"
@@ -33,5 +35,8 @@ class DisjointSets {
   std::vector<int> parents_;    // each at most its own index
   std::vector<char> isDriven_;  // none, if empty
 };
+
+/// Whether pairs of the elements 0 ... elements - 1, each joined once, close a loop. O(pairs log elements).
+bool closeALoop(const std::set<std::pair<int, int>>& pairs, std::size_t elements);
 
 }  // namespace cradle

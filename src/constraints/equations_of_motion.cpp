@@ -53,6 +53,13 @@ RightHandSide EquationsOfMotion::rightHandSide() {
 
 void EquationsOfMotion::evaluate(double time, const VectorX& state, VectorX& derivative) {
   ++evaluations_;
+  if (!projects_) return evaluateAt(time, state, derivative);
+  projected_ = state;
+  project(projected_);
+  evaluateAt(time, projected_, derivative);
+}
+
+void EquationsOfMotion::evaluateAt(double time, const VectorX& state, VectorX& derivative) {
   derivative.setZero(state.size());
   findBodyFrames(mechanism_.bodies, state, frames_);
   evaluatePoseRates(mechanism_.bodies, state, derivative);
@@ -166,7 +173,8 @@ EquationsOfMotion::MotorResponse EquationsOfMotion::responseOf(const std::vector
 }
 
 /// A bound on the accelerations of coordinates that those in `derivative` cause, whatever constraints do with them: no
-/// more than sqrt(J M^-1 J^T) |a| with the norm |a|^2 = a^T M a (Cauchy, Schwarz). And what keeps velocities.
+/// more than sqrt(J M^-1 J^T) |a| with the norm |a|^2 = a^T M a (Cauchy, Schwarz). The rate at which errors of target
+/// velocities are taken back is added.
 double EquationsOfMotion::scaleOf(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows,
                                   const VectorX& state, const VectorX& derivative) const {
   VectorX moving = state;

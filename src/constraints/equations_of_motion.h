@@ -83,6 +83,10 @@ class EquationsOfMotion {
   /// found, in m or rad.
   double project(VectorX& state);
 
+  /// Whether states are projected before they are evaluated. Near a dead point, where constraints nearly leave one more
+  /// motion, what a method's stages are off their manifold becomes accelerations without bound.
+  void setProjecting(bool projects) { projects_ = projects; }
+
   /// How often evaluate was called.
   long evaluations() const { return evaluations_; }
 
@@ -90,6 +94,7 @@ class EquationsOfMotion {
   RightHandSide rightHandSide();
 
  private:
+  void evaluateAt(double time, const VectorX& state, VectorX& derivative);
   void applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& derivative) const;
   void applySprings(const VectorX& state, VectorX& derivative) const;
   void applyPushes(const VectorX& state, VectorX& derivative) const;
@@ -132,9 +137,11 @@ class EquationsOfMotion {
   VectorX multipliers_;
   VectorX motorForces_, motorMobilities_, motorContradictions_;
   bool isWithoutContacts_ = false;  // in the evaluation under way
-  double motorTimeStep_ = 0;        // s; 0: motors hold without a limit
-  bool asksPossible_ = false;       // what motors can give, whatever their modes
-  std::vector<char> reached_;       // of each motor: it is at its target then
+  bool projects_ = false;
+  VectorX projected_;
+  double motorTimeStep_ = 0;   // s; 0: motors hold without a limit
+  bool asksPossible_ = false;  // what motors can give, whatever their modes
+  std::vector<char> reached_;  // of each motor: it is at its target then
   long evaluations_ = 0;
 };
 

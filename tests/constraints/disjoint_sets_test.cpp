@@ -46,5 +46,17 @@ TEST(DisjointSets, AreNotJoinedByWhatIsFixed) {
   for (const int body : {0, 1, 2}) EXPECT_EQ(sets.islandOf(body), body);
 }
 
+// A chain and a branch close nothing; one more pair between any two that they join closes a loop.
+TEST(DisjointSets, OfPairsTellWhetherTheyCloseALoop) {
+  const std::set<std::pair<int, int>> tree{{0, 1}, {1, 2}, {1, 3}, {4, 5}};
+  EXPECT_FALSE(closeALoop(tree, 6));
+  for (int a = 0; a < 6; ++a)
+    for (int b = a + 1; b < 6; ++b) {
+      std::set<std::pair<int, int>> more = tree;
+      const bool isNew = more.insert({a, b}).second, isApart = (a < 4) != (b < 4);
+      EXPECT_EQ(closeALoop(more, 6), isNew && !isApart) << a << " " << b;
+    }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -165,7 +165,7 @@ TEST(RodPendulum, ReachesTheTopOrDoesNot) {
 
 /// Two equal cranks of 0.2 m, coupled by a rod, that a torque on one turns from near their dead point. Turned as a
 /// parallelogram they have the inertia J = 2 I + m r^2, I about their bearings. Near the dead point the rod tells
-/// little of the other crank: the angle T t^2 / 2 J is right, or the promise is given up.
+/// little of the other crank: the promise may be given up, and the angle T t^2 / 2 J is right all the same.
 TEST(CoupledCranks, GoThroughTheirDeadPointOrSaySo) {
   const double turning = 2 * ((0.04 + 0.0004) / 12 + 0.01) + 0.04;
   int kept = 0, given = 0;
@@ -190,13 +190,13 @@ TEST(CoupledCranks, GoThroughTheirDeadPointOrSaySo) {
           hinge("c0", -0.1, R"("anchorB": [0, 0, 0], "motor": {"torque": -1})"),
           hinge("c1", -0.1, R"("anchorB": [1, 0, 0])"), hinge("c0", 0.1, R"("bodyB": "rod", "anchorB": [-0.5, 0, 0])"),
           hinge("c1", 0.1, R"("bodyB": "rod", "anchorB": [0.5, 0, 0])"))));
-      if (run.cost.promise.find("given up") != std::string::npos) {
-        ++given;
-        continue;
+      ++(run.cost.promise.find("given up") == std::string::npos ? kept : given);
+      double off = 0;
+      for (const Frame& frame : run.frames) {
+        const double right = -frame.time * frame.time / (2 * turning);
+        off = std::max(off, std::abs(frame.joints[0].coordinate - right));
       }
-      ++kept;
-      for (const Frame& frame : run.frames)
-        EXPECT_NEAR(frame.joints[0].coordinate, -frame.time * frame.time / (2 * turning), 100 * accuracy) << frame.time;
+      EXPECT_LT(off, 100 * accuracy);
     }
   EXPECT_GE(kept, 6);
   EXPECT_GE(given, 1);

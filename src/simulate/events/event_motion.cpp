@@ -25,7 +25,10 @@ constexpr int kMaxRopeRounds = 100;         // of ropes and contacts at one inst
 // Of the size: an error of constraints that is rounding, also of those about the origin, whose own are smaller still.
 constexpr double kTieRounding = 1e-12;
 constexpr double kMaxStepRatio = 1.0 / 8;  // of what a driven body takes to come to its like
-constexpr int kMaxDoubts = 20;             // steps for one event that the interpolant has and the step may not
+// Of a step near a dead point, one after the other: a stage within 1e-4 rad of the point itself spoils any of them.
+constexpr double kLengthsAcross[] = {1, 1.6, 2.7, 6, 15};
+constexpr double kFarError = 5;     // times what is allowed: a step with less may be too long for other reasons
+constexpr int kMaxDoubts = 20;      // steps for one event that the interpolant has and the step may not
 constexpr int kMaxMotorRounds = 3;  // of motors and contacts; those that change each other go on in the next step
 
 const EventRateLimit& eventRateLimitOf(const ChosenMethod& method, double accuracy, bool isTrial) {
@@ -49,6 +52,18 @@ VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double dur
   return tolerance;
 }
 
+/// Whether constraints close a loop of two moving bodies or more. What is fixed or driven counts as one body.
+bool isLinkage(const Mechanism& mechanism) {
+  const int fixed = static_cast<int>(mechanism.bodies.size());
+  const auto elementOf = [&](int body) {
+    return body != kFixed && !mechanism.bodies[static_cast<std::size_t>(body)].isDriven() ? body : fixed;
+  };
+  std::set<std::pair<int, int>> pairs;
+  for (const Constraint& constraint : mechanism.constraints)
+    pairs.insert(std::minmax({elementOf(constraint.anchorA.body), elementOf(constraint.anchorB.body)}));
+  return closeALoop(pairs, mechanism.bodies.size() + 1);
+}
+
 /// One Newton step to where a gap s closes that was `earlier` a time `before`: theta = -s / s' with s' = (s - earlier)
 /// / before. Zero where the gap does not close, which is then rounding.
 double untilClosed(double gap, double earlier, double before) {
@@ -67,7 +82,8 @@ EventMotion::EventMotion(IslandState& island, LimitEvents& ropes, const ChosenMe
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       eventRateLimit_(eventRateLimitOf(method, island.scene.accuracy, isTrial)),
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
-      windowStart_(island.time) {
+      windowStart_(island.time),
+      isLinkage_(isLinkage(island.assembly.mechanism)) {
   lengths_.fill(island_.scene.duration);
   stepSize_.order = method_.order;
   island_.step.startDerivativeIsKnown = false;
@@ -159,7 +175,7 @@ bool EventMotion::takeStep(double stepEnd) {
   while (!isTooShort()) {
     const double planned = std::min(stepSize_.timeStep, longestStep()), left = stepEnd - island_.time;
     const double length = planned >= left * (1 - kTimeRounding) ? left : planned;
-    island_.integrate(method_.integrate, length);
+    integrate(length, left);
     if (acceptStep(method_.errorNorm(step, tolerance_), step.timeStep, stepSize_)) break;
     keepStartDerivative(step);
   }
@@ -168,6 +184,37 @@ bool EventMotion::takeStep(double stepEnd) {
   shortSteps_ = stepSize_.timeStep < tolerances_.shortTimeStep ? shortSteps_ + 1 : 0;
   if (shortSteps_ <= kMaxShortSteps) return true;
   if (!noteUnboundedForces()) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
+  return false;
+}
+
+/// Takes a step of a length, or one that is longer and goes across a dead point. `left` (s) is the longest.
+void EventMotion::integrate(double length, double left) {
+  island_.equations.setProjecting(false);
+  island_.integrate(method_.integrate, length);
+  isAtDeadPoint_ = false;
+  if (!isLinkage_) return;
+  const double error = method_.errorNorm(island_.step, tolerance_);
+  if (error <= 1 && !goesFarFromConstraints()) return;
+  isAtDeadPoint_ = !(error <= kFarError) || goesFarFromConstraints();
+  if (integrateAcrossDeadPoint(length, left)) return;
+  isAtDeadPoint_ = false;
+  keepStartDerivative(island_.step);
+  island_.equations.setProjecting(false);
+  island_.integrate(method_.integrate, length);
+}
+
+/// Near a dead point stages that are off the manifold of the constraints have accelerations without bound; those that
+/// are on it have, to rounding, those of the motion, unless they are at the point itself. Shorter steps end nearer to
+/// it: where they are rejected too, longer ones are tried. False if none is accurate.
+bool EventMotion::integrateAcrossDeadPoint(double length, double left) {
+  island_.equations.setProjecting(true);
+  for (const double factor : kLengthsAcross) {
+    if (factor > 1 && !stepSize_.afterRejection) return false;
+    if (factor * length > left) return false;
+    keepStartDerivative(island_.step);
+    island_.integrate(method_.integrate, factor * length);
+    if (method_.errorNorm(island_.step, tolerance_) <= 1 && !goesFarFromConstraints()) return true;
+  }
   return false;
 }
 
@@ -373,7 +420,7 @@ void EventMotion::projectState() {
   bool isTouched = false;
   if (!contacts_.active().empty() || solver_.hasConstraints()) {
     isTouched = !isSame(state, island_.step.state);
-    if (!offConstraintsFrom_ && isFarFromConstraints(state)) offConstraintsFrom_ = island_.time;
+    if (!offConstraintsFrom_ && (isAtDeadPoint_ || isFarFromConstraints(state))) offConstraintsFrom_ = island_.time;
     bookProjection(island_.step.state, island_.assembly.mechanism, state);
   }
   if (solver_.hasConstraints()) requireConstraintsKept();
@@ -381,6 +428,13 @@ void EventMotion::projectState() {
     isTouched = isTouched || std::abs(orientation(state, body).squaredNorm() - 1) > EventTolerances::kUnitLength;
   if (isTouched) normalizeOrientations(state);
   isContinuous_ = !isTouched && !ropes_.hasLimits();
+}
+
+/// The same of the step that was taken.
+bool EventMotion::goesFarFromConstraints() {
+  projected_ = island_.step.state;
+  project(projected_);
+  return isFarFromConstraints(projected_);
 }
 
 /// Whether projection to `state` has moved bodies by more than the accuracy, in a step with an error of a part of it.

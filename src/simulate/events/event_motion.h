@@ -37,8 +37,9 @@ class EventMotion {
   /// Whether the last step kept the bodies' constraints: its interpolant may be projected.
   bool keepsConstraints() const { return keepsConstraints_; }
 
-  /// s: the end of the first step that constraints were to move by more than the accuracy, if there is one. Near a dead
-  /// point, where they leave more than one motion, rounding decides which.
+  /// s: the end of the first step that constraints were to move by more than the accuracy, if there is one, or that was
+  /// accurate only with its stages on their manifold. Near a dead point, where constraints leave more than one motion,
+  /// rounding decides which.
   std::optional<double> offConstraintsFrom() const { return offConstraintsFrom_; }
 
   /// Contacts that were active over the last step.
@@ -61,6 +62,8 @@ class EventMotion {
 
  private:
   bool takeStep(double stepEnd);
+  void integrate(double length, double left);
+  bool integrateAcrossDeadPoint(double length, double left);
   bool isTooShort();
   bool isSlowAtJoint();
   bool isJammed() const;
@@ -85,6 +88,8 @@ class EventMotion {
   double projectedGap(const ImpactTime& impact, const VectorX& state);
   void project(VectorX& state);
   void projectState();
+  bool movesFarByProjection();
+  bool goesFarFromConstraints();
   bool isFarFromConstraints(const VectorX& state) const;
   void requireConstraintsKept();
   bool makeChanges();
@@ -108,9 +113,10 @@ class EventMotion {
   ConstraintSolver solver_;
   EventRateLimit eventRateLimit_;
   VectorX tolerance_;
-  VectorX projected_;                         // scratch
-  double startConstraintError_ = 0;           // m or rad
-  double toleranceOfWork_ = INFINITY;         // J, of the last step
+  VectorX projected_;                  // scratch
+  double startConstraintError_ = 0;    // m or rad
+  double toleranceOfWork_ = INFINITY;  // J, of the last step
+  bool isAtDeadPoint_ = false;         // the last step was accurate only with its stages on the constraints' manifold
   std::optional<double> offConstraintsFrom_;  // s
   std::optional<RunningIntegral> ledgerOfStep_;
   std::vector<int> tautRowsBefore_;  // of ropes, before an event
@@ -128,6 +134,7 @@ class EventMotion {
   int eventsInWindow_ = 0;
   int changesWithoutTime_ = 0;  // of contacts, in a row
   double windowStart_ = 0;      // s
+  const bool isLinkage_;        // whether it may come to a dead point
 };
 
 }  // namespace cradle

@@ -216,12 +216,7 @@ bool isLinkage(const Scene& scene, const IslandPlan& island) {
     const auto [a, b] = anchorsOf(link, scene);
     pairs.insert(std::minmax({elementOf(a.body), elementOf(b.body)}));
   }
-  DisjointSets chains(scene.bodies.size() + 1);
-  for (const auto& [a, b] : pairs) {
-    if (chains.islandOf(a) == chains.islandOf(b)) return true;
-    chains.join(a, b);
-  }
-  return false;
+  return closeALoop(pairs, scene.bodies.size() + 1);
 }
 
 int independentRows(const PossibleContacts& contacts) {
