@@ -165,12 +165,13 @@ TEST(RodPendulum, ReachesTheTopOrDoesNot) {
 
 /// Two equal cranks of 0.2 m, coupled by a rod, that a torque on one turns from near their dead point. Turned as a
 /// parallelogram they have the inertia J = 2 I + m r^2, I about their bearings. Near the dead point the rod tells
-/// little of the other crank: the promise may be given up, and the angle T t^2 / 2 J is right all the same.
-TEST(CoupledCranks, GoThroughTheirDeadPointOrSaySo) {
+/// little of the other crank: the angle T t^2 / 2 J is right, though the promise may be given up. At 1e-8 rounding
+/// decides too much there, and a run may end.
+TEST(CoupledCranks, GoThroughTheirDeadPoint) {
   const double turning = 2 * ((0.04 + 0.0004) / 12 + 0.01) + 0.04;
-  int kept = 0, given = 0;
+  int right = 0;
   for (const double start : {0.002, 0.01, 0.05, 0.5, 1.2})
-    for (const double accuracy : {1e-4, 1e-6}) {
+    for (const double accuracy : {1e-4, 1e-6, 1e-7, 1e-8}) {
       SCOPED_TRACE(fmt::format("{} {}", start, accuracy));
       const double x = 0.1 * std::cos(start), y = 0.1 * std::sin(start);
       const auto crank = [&](const char* name, double at) {
@@ -182,24 +183,29 @@ TEST(CoupledCranks, GoThroughTheirDeadPointOrSaySo) {
       const auto hinge = [](const char* a, double from, const char* to) {
         return fmt::format(R"({{"bodyA": "{}", "anchorA": [{}, 0, 0], {}}})", a, from, to);
       };
-      const Trajectory run = simulate(sceneWith(fmt::format(
+      const Scene scene = sceneWith(fmt::format(
           R"("duration": 2, "accuracy": {}, "gravity": [0, 0, 0], "bodies": [{}, {}, {{"name": "rod", "mass": 1,
           "collision": "none", "position": [{}, {}, 0], "shape": {{"box": {{"size": [1, 0.02, 0.02]}}}}}}],
           "hinges": [{}, {}, {}, {}])",
           accuracy, crank("c0", 0), crank("c1", 1), 0.5 + 2 * x, 2 * y,
           hinge("c0", -0.1, R"("anchorB": [0, 0, 0], "motor": {"torque": -1})"),
           hinge("c1", -0.1, R"("anchorB": [1, 0, 0])"), hinge("c0", 0.1, R"("bodyB": "rod", "anchorB": [-0.5, 0, 0])"),
-          hinge("c1", 0.1, R"("bodyB": "rod", "anchorB": [0.5, 0, 0])"))));
-      ++(run.cost.promise.find("given up") == std::string::npos ? kept : given);
-      double off = 0;
-      for (const Frame& frame : run.frames) {
-        const double right = -frame.time * frame.time / (2 * turning);
-        off = std::max(off, std::abs(frame.joints[0].coordinate - right));
+          hinge("c1", 0.1, R"("bodyB": "rod", "anchorB": [0.5, 0, 0])")));
+      try {
+        const Trajectory run = simulate(scene);
+        double off = 0;
+        for (const Frame& frame : run.frames) {
+          const double angle = -frame.time * frame.time / (2 * turning);
+          off = std::max(off, std::abs(frame.joints[0].coordinate - angle));
+        }
+        EXPECT_LT(off, 100 * accuracy);
+        ++right;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::unstable);
+        EXPECT_EQ(accuracy, 1e-8) << error.what();
       }
-      EXPECT_LT(off, 100 * accuracy);
     }
-  EXPECT_GE(kept, 6);
-  EXPECT_GE(given, 1);
+  EXPECT_GE(right, 18);
 }
 
 }  // namespace

@@ -27,7 +27,6 @@ constexpr double kTieRounding = 1e-12;
 constexpr double kMaxStepRatio = 1.0 / 8;  // of what a driven body takes to come to its like
 // Of a step near a dead point, one after the other: a stage within 1e-4 rad of the point itself spoils any of them.
 constexpr double kLengthsAcross[] = {1, 1.6, 2.7, 6, 15};
-constexpr double kFarError = 5;     // times what is allowed: a step with less may be too long for other reasons
 constexpr int kMaxDoubts = 20;      // steps for one event that the interpolant has and the step may not
 constexpr int kMaxMotorRounds = 3;  // of motors and contacts; those that change each other go on in the next step
 
@@ -195,7 +194,7 @@ void EventMotion::integrate(double length, double left) {
   if (!isLinkage_) return;
   const double error = method_.errorNorm(island_.step, tolerance_);
   if (error <= 1 && !goesFarFromConstraints()) return;
-  isAtDeadPoint_ = !(error <= kFarError) || goesFarFromConstraints();
+  isAtDeadPoint_ = !std::isfinite(error) || goesFarFromConstraints();
   if (integrateAcrossDeadPoint(length, left)) return;
   isAtDeadPoint_ = false;
   keepStartDerivative(island_.step);

@@ -37,9 +37,8 @@ class EventMotion {
   /// Whether the last step kept the bodies' constraints: its interpolant may be projected.
   bool keepsConstraints() const { return keepsConstraints_; }
 
-  /// s: the end of the first step that constraints were to move by more than the accuracy, if there is one, or that was
-  /// accurate only with its stages on their manifold. Near a dead point, where constraints leave more than one motion,
-  /// rounding decides which.
+  /// s: the end of the first step that constraints were to move by more than the accuracy, if there is one, unless its
+  /// stages were projected too. Near a dead point, where they leave more than one motion, rounding decides which.
   std::optional<double> offConstraintsFrom() const { return offConstraintsFrom_; }
 
   /// Contacts that were active over the last step.
@@ -113,10 +112,10 @@ class EventMotion {
   ConstraintSolver solver_;
   EventRateLimit eventRateLimit_;
   VectorX tolerance_;
-  VectorX projected_;                  // scratch
-  double startConstraintError_ = 0;    // m or rad
-  double toleranceOfWork_ = INFINITY;  // J, of the last step
-  bool isAtDeadPoint_ = false;         // the last step was accurate only with its stages on the constraints' manifold
+  VectorX projected_;                         // scratch
+  double startConstraintError_ = 0;           // m or rad
+  double toleranceOfWork_ = INFINITY;         // J, of the last step
+  bool isAtDeadPoint_ = false;                // the last step was far off constraints unless its stages were projected
   std::optional<double> offConstraintsFrom_;  // s
   std::optional<RunningIntegral> ledgerOfStep_;
   std::vector<int> tautRowsBefore_;  // of ropes, before an event
