@@ -156,20 +156,26 @@ double LimitEvents::usualTension(std::size_t limit) const {
 
 std::optional<LimitChange> LimitEvents::firstChange(const Step& step) {
   std::optional<LimitChange> first;
+  for (std::size_t i = 0; i < assembly_.limits.size(); ++i)
+    if (const auto change = changeOf(step, i, first ? first->fraction : 1)) first = change;
+  if (!first) return first;
   for (std::size_t i = 0; i < assembly_.limits.size(); ++i) {
-    const double end = first ? first->fraction : 1;
-    if (!isTaut(i)) {
-      if (const auto reached = firstReach(step, i, end)) first = reached;
-    } else if (const auto fraction = firstTensionLoss(step, i); fraction && *fraction < end) {
-      first = LimitChange{*fraction, i};
-    }
+    const auto change = i == first->limit ? std::nullopt : changeOf(step, i, first->latest);
+    if (change && change->fraction > first->fraction + kAtOnce) first->latest = change->fraction;
   }
-  if (first && isTaut(first->limit))
+  if (isTaut(first->limit))
     for (std::size_t i = 0; i < assembly_.limits.size(); ++i)
       if (isTaut(i))
         tensionScales_[i] = std::max(tension(i, step.time, step.startState),
                                      std::abs(tension(i, step.time + step.timeStep, step.state)));
   return first;
+}
+
+/// The first change of a limit before `end` (a fraction of the step).
+std::optional<LimitChange> LimitEvents::changeOf(const Step& step, std::size_t limit, double end) {
+  if (!isTaut(limit)) return firstReach(step, limit, end);
+  const std::optional<double> fraction = firstTensionLoss(step, limit);
+  return fraction && *fraction < end ? std::optional(LimitChange{*fraction, limit}) : std::nullopt;
 }
 
 /// First root in (0, `end`] of the event function maxLength - L(theta) along the step's interpolant: the limit becomes

@@ -13,6 +13,7 @@ struct LimitChange {
   double fraction = 0;  // of the step, 0..1
   std::size_t limit = 0;
   double threshold = 0;  // m: slack that is reached; < 0: of a limit without tension at which the link is
+  double latest = 1;     // fraction of the step, > `fraction`, at which another limit changes
 };
 
 /// Ropes and the stops of joints over time: nothing while slack; an impulse when the limit is reached; then a bilateral
@@ -74,6 +75,7 @@ class LimitEvents {
   double usualTension(std::size_t limit) const;
   double tension(std::size_t limit, double time, const VectorX& state);
   std::optional<double> firstTensionLoss(const Step& step, std::size_t limit);
+  std::optional<LimitChange> changeOf(const Step& step, std::size_t limit, double end);
   std::optional<LimitChange> firstReach(const Step& step, std::size_t limit, double end) const;
   /// A limit that is reached and goes on.
   struct Stretch {

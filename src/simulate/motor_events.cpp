@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "constraints/invariants.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
@@ -49,6 +50,7 @@ double MotorEvents::margin(const MotorChange& change, const VectorX& state) {
 
 std::optional<MotorChange> MotorEvents::firstChange(const Step& step) {
   std::optional<MotorChange> first;
+  std::vector<double> fractions;
   for (std::size_t i = 0; i < motors().size(); ++i) {
     const JointMotor& motor = motors()[i];
     if (!motor.hasTarget || motor.maxForce == 0 || rests(i)) continue;
@@ -62,12 +64,15 @@ std::optional<MotorChange> MotorEvents::firstChange(const Step& step) {
       const double after = marginAt(i, step.time + fraction * step.timeStep, sample_);
       if (before >= 0 && after < 0) {
         const double found = fraction - after / (after - before) / kSamples;
+        fractions.push_back(found);
         if (!first || found < first->fraction) first = MotorChange{found, i};
         break;
       }
       before = after;
     }
   }
+  for (const double fraction : fractions)
+    if (fraction > first->fraction + kAtOnce) first->latest = std::min(first->latest, fraction);
   return first;
 }
 

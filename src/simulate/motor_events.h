@@ -10,6 +10,7 @@ namespace cradle {
 struct MotorChange {
   double fraction = 0;  // of the step, 0..1
   std::size_t motor = 0;
+  double latest = 1;  // fraction of the step, > `fraction`, at which another motor changes
 };
 
 /// Motors with a target velocity over time: one holds its joint's velocity, as long as that takes no more force than it

@@ -5,6 +5,7 @@
 namespace cradle {
 
 constexpr double kTimeRounding = 1e-9;     // of a step: remainders below it are rounding
+constexpr double kAtOnce = 1e-6;           // of a step: changes of several contacts, limits or motors that are one
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: slower is rounding
 constexpr double kRopeTolerance = 1e-13;   // of the length, or of the tension that is left
 

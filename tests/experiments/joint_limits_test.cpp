@@ -275,5 +275,36 @@ TEST(JointLimits, StopOfASwingingRailLetsGoAtItsGreatestSpeed) {
   }
 }
 
+/// A motor presses a slider against its upper stop, from which it bounces until it lies there. The hinge that carries
+/// it lies at a stop of its own, pressed by nothing: that this one is crossed, by rounding, is looked for no farther
+/// than up to the next bounce, or the slider would go through its stop.
+TEST(JointLimits, StopIsNotPassedWhileAnotherIsLookedFor) {
+  for (const double accuracy : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+    const Trajectory moved = runStopped(10, accuracy, R"(
+        {"name": "a", "mass": 0.5240725914080964, "shape": {"sphere": {"radius": 2.119978468248363}},
+         "position": [3.533297447080605, 50.94822335446625, 0], "collision": "none",
+         "orientation": {"w": 0.9951241018179657, "x": -0.07533774062114874, "y": 0.05954143164406595, "z": 0.022518097985007757}},
+        {"name": "b", "mass": 20.247331441210566, "shape": {"sphere": {"radius": 1.7661759212885149}},
+         "position": [10.010221429642069, 50.94822335446625, 0], "orientation": {"axis": [1, 0, 0], "angleDegrees": 90}},
+        {"name": "c", "mass": 0.9318771971954372, "shape": {"sphere": {"radius": 2.805059299279237}},
+         "position": [17.62894679725499, 50.94822335446625, 0],
+         "orientation": {"w": -0.583046919803226, "x": 0.4000703554476019, "y": 0.400070355447602, "z": -0.583046919803226}})",
+                                        R"("hinges": [{"bodyA": "a",
+          "anchorA": [-3.504661860398961, 0.19004913710432003, -0.4067154033192244], "anchorB": [0, 50.94822335446625, 0],
+          "axis": [0.9918955063618252, -0.05378803793078457, 0.11510930212096161],
+          "limits": {"lower": -0.29551988391118666, "upper": 0, "restitution": 0.001596303474423188},
+          "motor": {"targetVelocity": 0, "maxTorque": 10.024014709401866}}],
+        "sliders": [{"bodyA": "b", "anchorA": [-2.943626535480859, 0, 0], "bodyB": "a",
+          "anchorB": [3.504661860398961, -0.19004913710430893, 0.406715403319223], "axis": [0, 1, 2.220446049250313e-16],
+          "limits": {"lower": -0.1766175921288515, "upper": 0.1766175921288515, "restitution": 0.5}},
+         {"bodyA": "c", "anchorA": [1.1102230246251565e-14, 1.6819829472557224, 4.362050258232195], "bodyB": "b",
+          "anchorB": [2.943626535480859, 0, 0], "axis": [0, -0.3597748427681178, -0.9330391537932243],
+          "limits": {"lower": -0.41815704118842073, "upper": 2.3994514083948193, "restitution": 0.8047104791065666},
+          "motor": {"targetVelocity": 1.5737175271736787, "maxForce": 10.993825494759873}}],)");
+    for (const Frame& frame : moved.frames) EXPECT_LT(frame.joints[2].coordinate, 2.3994514 + 1e-6) << accuracy;
+    EXPECT_NEAR(moved.frames.back().joints[2].coordinate, 2.3994514, 1e-6) << accuracy;
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -14,6 +14,7 @@
 #include "simulate/events/contacts_on_meshes.h"
 #include "simulate/events/cylinder_rims.h"
 #include "simulate/events/sliding_friction.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
@@ -23,7 +24,6 @@ using Kind = ContactChange::Kind;
 constexpr int kEventSamples = 4;      // of a step of order 8
 constexpr int kFewEventSamples = 2;   // of one of order 5, which is half as long
 constexpr int kMaxBorderCuts = 60;    // halves of a step: none is left, to rounding
-constexpr double kAtOnce = 1e-6;      // of a step: changes of several contacts that are one
 constexpr int kMaxSecants = 20;       // of infeasibility; six are usual
 constexpr double kBehindKink = -0.9;  // a larger infeasibility is behind its kink, whatever rounding does
 

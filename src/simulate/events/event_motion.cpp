@@ -8,7 +8,6 @@
 
 #include "constraints/invariants.h"
 #include "core/error.h"
-#include "simulate/events/event_location.h"
 #include "simulate/ledger_quadrature.h"
 #include "simulate/thresholds.h"
 
@@ -307,11 +306,11 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   } else if (event.impact) {
     if (!stopAtImpact(*event.impact)) event.impact.reset();
   } else if (event.rope) {
-    endStepAtEvent(island_, method_.integrate, {event.rope->fraction * whole, latest, kRopeTolerance},
-                   [&](const VectorX& state) { return ropes_.margin(*event.rope, state); });
+    endStepBefore(event.rope, latest, kRopeTolerance, event,
+                  [&](const VectorX& state) { return ropes_.margin(*event.rope, state); });
   } else if (event.motor) {
-    endStepAtEvent(island_, method_.integrate, {event.motor->fraction * whole, latest, EventTolerances::kEventFunction},
-                   [&](const VectorX& state) { return motors_.margin(*event.motor, state); });
+    endStepBefore(event.motor, latest, EventTolerances::kEventFunction, event,
+                  [&](const VectorX& state) { return motors_.margin(*event.motor, state); });
   } else if (event.contact && event.contact->kind == ContactChange::Kind::redundant) {
     keepStartDerivative(step);
     island_.integrate(method_.integrate, event.contact->fraction * whole);
@@ -333,6 +332,17 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   }
   if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
   return event;
+}
+
+/// Ends the step at a change of a limit or a motor. A change that only the interpolant has is not looked for behind the
+/// next one of its kind: it is doubtful.
+template <class Change>
+void EventMotion::endStepBefore(std::optional<Change>& change, double latest, double tolerance, Event& event,
+                                const EventFunction& margin) {
+  const double whole = island_.step.timeStep, root = change->fraction * whole;
+  const double last = std::min(latest, change->latest * whole);
+  const double left = endStepAtEvent(island_, method_.integrate, {root, last, tolerance}, margin);
+  if (left > tolerance && last < latest) change.reset(), event.doubtful = root;
 }
 
 /// Cuts the step on its interpolant.

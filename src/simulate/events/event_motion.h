@@ -8,6 +8,7 @@
 #include "math/running_integral.h"
 #include "simulate/energy_guard.h"
 #include "simulate/events/event_contacts.h"
+#include "simulate/events/event_location.h"
 #include "simulate/events/event_tolerances.h"
 #include "simulate/island_state.h"
 #include "simulate/limit_events.h"
@@ -82,6 +83,9 @@ class EventMotion {
   Event stopAtFirstEvent();
   void resolveMotors(const std::optional<MotorChange>& change);
   bool stopAtImpact(const ImpactTime& impact);
+  template <class Change>
+  void endStepBefore(std::optional<Change>& change, double latest, double tolerance, Event& event,
+                     const EventFunction& margin);
   void cutAtEvent(Event& event);
   std::optional<double> fractionOfImpact(const ImpactTime& impact);
   double projectedGap(const ImpactTime& impact, const VectorX& state);
