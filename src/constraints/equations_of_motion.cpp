@@ -282,8 +282,8 @@ void EquationsOfMotion::keepTargets(VectorX& state) {
   state += responses * leastForces(perImpulse, Eigen::Map<const VectorX>(missing.data(), count));
 }
 
-/// What the accelerations by these forces lack of those `wanted`, in units of ten times what boxMinimum, by which such
-/// contradictions are resolved, takes for rounding; 0 for coordinates to which nothing leaves any motion.
+/// The shortfall of the accelerations by these forces from those `wanted`, in units of ten times what boxMinimum, by
+/// which such contradictions are resolved, takes for rounding; 0 for coordinates to which nothing leaves any motion.
 VectorX EquationsOfMotion::contradictionOf(const MotorResponse& response, const VectorX& forces,
                                            const VectorX& wanted) {
   VectorX left = (response.perForce * forces - wanted).cwiseAbs();

@@ -84,7 +84,7 @@ class EquationsOfMotion {
   double project(VectorX& state);
 
   /// Whether states are projected before they are evaluated. Near a dead point, where constraints nearly leave one more
-  /// motion, what a method's stages are off their manifold becomes accelerations without bound.
+  /// motion, stages off their manifold have accelerations without bound.
   void setProjecting(bool projects) { projects_ = projects; }
 
   /// How often evaluate was called.

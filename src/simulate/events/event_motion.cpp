@@ -439,7 +439,7 @@ void EventMotion::projectState() {
   isContinuous_ = !isTouched && !ropes_.hasLimits();
 }
 
-/// The same of the step that was taken.
+/// Whether projection would move the end of the step that was taken by more than the accuracy.
 bool EventMotion::goesFarFromConstraints() {
   projected_ = island_.step.state;
   project(projected_);

@@ -38,8 +38,9 @@ class EventMotion {
   /// Whether the last step kept the bodies' constraints: its interpolant may be projected.
   bool keepsConstraints() const { return keepsConstraints_; }
 
-  /// s: the end of the first step that constraints were to move by more than the accuracy, if there is one, unless its
-  /// stages were projected too. Near a dead point, where they leave more than one motion, rounding decides which.
+  /// s: the end of the first step that constraints were to move by more than the accuracy, if there is one, also if it
+  /// was taken again with its stages projected. Near a dead point, where they leave more than one motion, rounding
+  /// decides which.
   std::optional<double> offConstraintsFrom() const { return offConstraintsFrom_; }
 
   /// Contacts that were active over the last step.
@@ -91,7 +92,6 @@ class EventMotion {
   double projectedGap(const ImpactTime& impact, const VectorX& state);
   void project(VectorX& state);
   void projectState();
-  bool movesFarByProjection();
   bool goesFarFromConstraints();
   bool isFarFromConstraints(const VectorX& state) const;
   void requireConstraintsKept();

@@ -47,6 +47,7 @@ SteppedMotion::SteppedMotion(IslandState& island, LimitEvents& ropes, const Chos
   ropes_.setTimeStep(method.timeStep);
   island_.step.startDerivativeIsKnown = false;
   island_.equations.setMotorSteps(method.timeStep);
+  island_.equations.setProjecting(false);
   for (JointMotor& motor : island_.assembly.mechanism.motors)
     if (motor.hasTarget) motor.mode = JointMotor::Mode::holds;
   contacts_.resolveImpacts(island_.time, island_.state, ropes_, island_.state);
