@@ -137,19 +137,23 @@ Constraint coordinateAtStart(const Joint& joint, const JointTurns& turns, const 
   return {a, b, coordinate};
 }
 
-/// The stops of a joint between two scene bodies.
-void addStops(const JointRange& range, int bodyA, int bodyB, const Constraint& coordinate, Assembly& assembly) {
+/// Adds the stops of a joint between two scene bodies; returns their indices into the limits.
+std::vector<std::size_t> addStops(const JointRange& range, int bodyA, int bodyB, const Constraint& coordinate,
+                                  Assembly& assembly) {
   const auto& [a, b, kind] = coordinate;
   JointLimit stop{a, b, std::get<JointCoordinate>(kind)};
   stop.size = std::max(massDistance(a, assembly.mechanism.bodies), massDistance(b, assembly.mechanism.bodies));
   stop.restitution = range.restitution;
   const double start = stop.bound.value;
+  std::vector<std::size_t> added;
   for (const auto& [bound, side] : {std::pair(range.lower, -1.0), {range.upper, 1.0}}) {
     if (!std::isfinite(bound)) continue;
     stop.bound.value = start + bound, stop.side = side;
+    added.push_back(assembly.limits.size());
     assembly.limits.emplace_back(stop);
     assembly.limitBodies.emplace_back(bodyA, bodyB);
   }
+  return added;
 }
 
 JointMotor motorOf(const JointDrive& drive, const Constraint& joint) {
@@ -164,8 +168,10 @@ JointMotor motorOf(const JointDrive& drive, const Constraint& joint) {
 template <class Joint>
 void addCoordinate(const Joint& joint, std::size_t index, const Constraint& coordinate, Assembly& assembly) {
   std::vector<JointMotor>& motors = assembly.mechanism.motors;
-  if (joint.limits) addStops(*joint.limits, joint.anchorA.body, joint.anchorB.body, coordinate, assembly);
-  assembly.joints.push_back({coordinate, index, joint.motor ? static_cast<int>(motors.size()) : -1});
+  AssembledJoint assembled{coordinate, index, joint.motor ? static_cast<int>(motors.size()) : -1, {}, {}};
+  if (joint.limits)
+    assembled.stops = addStops(*joint.limits, joint.anchorA.body, joint.anchorB.body, coordinate, assembly);
+  assembly.joints.push_back(std::move(assembled));
   if (joint.motor) motors.push_back(motorOf(*joint.motor, coordinate));
 }
 
@@ -318,6 +324,19 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
   satisfyConstraints(scene, assembly);
   warnOfSteps(scene, island.method, assembly);
   return assembly;
+}
+
+void beginAt(double time, const VectorX& state, const std::vector<JointState>& joints, Assembly& assembly) {
+  assembly.startTime = time;
+  assembly.state = state;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    AssembledJoint& joint = assembly.joints[i];
+    joint.start = joints[i];
+    for (const std::size_t index : joint.stops) {
+      auto& stop = std::get<JointLimit>(assembly.limits[index]);
+      stop.turned = joints[i].coordinate, stop.rate = joints[i].velocity;
+    }
+  }
 }
 
 int indexAmong(const std::vector<int>& bodies, int body) {

@@ -10,6 +10,7 @@
 #include "scene/scene.h"
 #include "simulate/colliders.h"
 #include "simulate/plan/plan.h"
+#include "trajectory/trajectory.h"
 
 namespace cradle {
 
@@ -20,9 +21,11 @@ struct PartNames {
 
 /// A hinge or a slider of an island.
 struct AssembledJoint {
-  Constraint coordinate;  // whose kind is a JointCoordinate: 0 at the start
-  std::size_t index = 0;  // among the scene's hinges and sliders, in this order
-  int motor = -1;         // index into the mechanism's motors, or -1
+  Constraint coordinate;           // whose kind is a JointCoordinate: 0 at the start
+  std::size_t index = 0;           // among the scene's hinges and sliders, in this order
+  int motor = -1;                  // index into the mechanism's motors, or -1
+  std::vector<std::size_t> stops;  // indices into the assembly's limits
+  JointState start;                // where the island begins to move; 0 at time 0
 };
 
 /// An island of a scene turned into what the methods work on.
@@ -31,7 +34,8 @@ struct Assembly {
   ContactGeometry geometry;
   std::vector<Limit> limits;
   std::vector<AssembledJoint> joints;
-  VectorX state;                    // at time 0
+  double startTime = 0;             // s: when the island begins to move
+  VectorX state;                    // then
   std::vector<int> sceneBodies;     // scene body of each moving body, ascending
   std::vector<std::size_t> pushes;  // of the island, indices into the scene's
   PartNames names;                  // taut ropes stand behind the constraints named here
@@ -48,9 +52,12 @@ int indexAmong(const std::vector<int>& bodies, int body);
 /// Scene bodies A, B of a pair of colliders.
 std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair);
 
-/// The scene must have passed refuseUnsupported. Start velocities that violate constraints are projected, with a
-/// warning.
+/// The island at time 0. The scene must have passed refuseUnsupported. Start velocities that violate constraints are
+/// projected, with a warning.
 Assembly assemble(const Scene& scene, const IslandPlan& island);
+
+/// Lets an island begin to move at `time` (s), in that state and with such coordinates of its joints.
+void beginAt(double time, const VectorX& state, const std::vector<JointState>& joints, Assembly& assembly);
 
 /// Throws Error(scene) that names everything in the scene that no method simulates yet, one a line.
 void refuseUnsupported(const Scene& scene);

@@ -1,5 +1,7 @@
 #include "simulate/conservation_record.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -88,9 +90,17 @@ ConservationRecord::ConservationRecord(const Assembly& assembly, double accuracy
   }
 }
 
+void ConservationRecord::measure(const VectorX& state) {
+  measureEnergy(invariantsOf(assembly_.mechanism, state));
+}
+
+void ConservationRecord::measureEnergy(const Invariants& sums) {
+  largestEnergy_ = std::max({largestEnergy_, sums.kinetic, std::abs(sums.potential - start_.potential)});
+}
+
 void ConservationRecord::add(double time, const VectorX& state) {
   const Invariants sums = invariantsOf(assembly_.mechanism, state);
-  largestEnergy_ = std::max({largestEnergy_, sums.kinetic, std::abs(sums.potential - start_.potential)});
+  measureEnergy(sums);
   const double rounding = energyOfPlaceErrors(assembly_.mechanism, assembly_.radii, state, 0);
   energy_.add(time, std::abs(numericalEnergy(state)) - rounding, ratio_ * largestEnergy_);
   const auto addDissipation = [&](Dissipation& by, double taken) {
@@ -105,7 +115,7 @@ void ConservationRecord::add(double time, const VectorX& state) {
 
 void ConservationRecord::addMomenta(double time, const VectorX& state, const Invariants& sums) {
   const MomentumSizes sizes = momentumSizesOf(assembly_.mechanism.bodies, state, sums.momentum);
-  const Vec3 byGravity = sizes.mass * time * assembly_.mechanism.gravity;
+  const Vec3 byGravity = sizes.mass * (time - assembly_.startTime) * assembly_.mechanism.gravity;
   largestMomentum_ = std::max(largestMomentum_, sizes.momentum);
   largestSpin_ = std::max(largestSpin_, sizes.spin);
   momentum_.add(time, (sums.momentum - start_.momentum - byGravity).norm(), ratio_ * largestMomentum_);
@@ -125,6 +135,14 @@ std::optional<ConservationRecord::Loss> ConservationRecord::firstLoss() const {
   judge(momentum_, largestMomentum_, "momentum that nothing gave");
   judge(spin_, largestSpin_, "angular momentum that nothing gave");
   return first;
+}
+
+PromiseEnd endOf(const ConservationRecord::Loss& loss, const std::vector<int>& bodies, const Scene& scene) {
+  PromiseEnd end{
+      loss.time, fmt::format("{} is beyond {:g} times the accuracy", loss.sum, kMaxNumericalRatio), bodies, {}};
+  end.warning = fmt::format("{}: the accuracy asked was not kept from {:.6g} s on: {} ({})", scene.path, end.time,
+                            end.reason, namesOfBodies(bodies, scene));
+  return end;
 }
 
 }  // namespace cradle

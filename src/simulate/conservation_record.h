@@ -30,12 +30,15 @@ class Drift {
 /// Judges by the frames of an island whether the accuracy was kept: by numerical energy, by energy that impacts,
 /// friction and dampers have taken, which they never give back, and by momentum and angular momentum of an island on
 /// which nothing acts from outside but gravity. (What is fixed takes any momentum.) The measure of the energy is the
-/// largest in the frames: the kinetic energy, the change of the potential energy, and what a fall of the bodies by
+/// largest in the run: the kinetic energy, the change of the potential energy, and what a fall of the bodies by
 /// their radii of gyration would give. The measures of the momenta are the largest sums of the bodies' magnitudes.
 class ConservationRecord {
  public:
   /// Keeps a reference to `assembly`. `accuracy`: the one asked, m/s of bodies at rest.
   ConservationRecord(const Assembly& assembly, double accuracy);
+
+  /// To be called with states between frames, too: what is moved to and fro may stand still at all frames.
+  void measure(const VectorX& state);
 
   /// To be called with each frame's time (s) and state.
   void add(double time, const VectorX& state);
@@ -50,6 +53,7 @@ class ConservationRecord {
   std::optional<Loss> firstLoss() const;
 
  private:
+  void measureEnergy(const Invariants& sums);
   void addMomenta(double time, const VectorX& state, const Invariants& sums);
 
   const Assembly& assembly_;
@@ -65,5 +69,8 @@ class ConservationRecord {
   Dissipation byImpact_, byFriction_, byDamping_;
   Drift energy_, momentum_, spin_;
 };
+
+/// What such a loss makes of the promise of the scene's `bodies`.
+PromiseEnd endOf(const ConservationRecord::Loss& loss, const std::vector<int>& bodies, const Scene& scene);
 
 }  // namespace cradle

@@ -53,6 +53,13 @@ void Corrections::record(Correction correction) {
   if (counts_[static_cast<std::size_t>(correction.kind)]++ == 0) first_.push_back(std::move(correction));
 }
 
+void Corrections::take(Corrections& other) {
+  for (Correction& first : other.first_)
+    if (counts_[static_cast<std::size_t>(first.kind)] == 0) first_.push_back(std::move(first));
+  for (std::size_t kind = 0; kind < kCorrectionKinds; ++kind) counts_[kind] += other.counts_[kind];
+  other = {};
+}
+
 void Corrections::addCounts(std::map<std::string, long>& counts) const {
   for (std::size_t kind = 0; kind < kCorrectionKinds; ++kind)
     if (counts_[kind] > 0) counts[correctionName(static_cast<CorrectionKind>(kind))] += counts_[kind];

@@ -39,6 +39,9 @@ class Corrections {
  public:
   void record(Correction correction);
 
+  /// Takes all that another one has recorded, and empties it.
+  void take(Corrections& other);
+
   /// Those that were the first of their kind, since the last call.
   std::vector<Correction> takeFirst();
 

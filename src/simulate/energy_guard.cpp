@@ -157,6 +157,15 @@ double EnergyGuard::firstStepEnergy(double timeStep) const {
     energy += (push.force.squaredNorm() * inverseMass + push.torque.squaredNorm() * body.inverseInertia.norm()) *
               timeStep * timeStep;
   }
+  for (const JointMotor& motor : mechanism_.motors)
+    for (const Attachment& end : {motor.joint.anchorA, motor.joint.anchorB}) {
+      if (end.body == kFixed) continue;
+      const RigidBody& body = mechanism_.bodies[static_cast<std::size_t>(end.body)];
+      const double turning = body.inverseInertia.norm();
+      const bool turns = std::get<JointCoordinate>(motor.joint.kind).turns;
+      const double mobility = turns ? turning : body.inverseMass + end.point.squaredNorm() * turning;
+      energy += motor.maxForce * motor.maxForce * mobility * timeStep * timeStep;
+    }
   return energy;
 }
 

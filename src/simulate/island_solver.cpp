@@ -32,9 +32,15 @@ double contactTimeStep(const Assembly& assembly) {
   return std::min(kContactTimeStep, kFallRatio * std::sqrt(smallestSize(assembly.geometry) / gravity));
 }
 
+std::string textOf(const PromiseEnd& end, const Scene& scene) {
+  return fmt::format("{}: the accuracy asked is not promised from {:.6g} s on: {} ({})", scene.path, end.time,
+                     end.reason, namesOfBodies(end.bodies, scene));
+}
+
 }  // namespace
 
-IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method)
+IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method,
+                           std::optional<PromiseEnd> promiseEnd)
     : island_(scene, std::move(assembly)),
       ropes_(island_),
       coordinates_(island_.assembly),
@@ -42,8 +48,11 @@ IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMe
       frameEquations_(island_.assembly.mechanism),
       method_(method),
       record_(island_.assembly, scene.accuracy),
+      promiseEnd_(std::move(promiseEnd)),
       jointStates_(island_.assembly.joints.size()) {
-  if (method.isAdaptive())
+  if (promiseEnd_)
+    changeToSteps();
+  else if (method.isAdaptive())
     motion_.emplace<EventMotion>(island_, ropes_, method, false);
   else
     motion_.emplace<SteppedMotion>(island_, ropes_, method);
@@ -56,29 +65,45 @@ const VectorX& IslandSolver::stateAt(double time, const std::function<void(doubl
   while (island_.time < time - same) {
     throwIfInterrupted();
     advance(time);
+    if (isSwept_) swept_.add(island_.step, island_.state);
+    if (method_.isAdaptive()) record_.measure(island_.state);
     if (reached) reached(island_.time);
   }
-  if (island_.time <= time + same)
+  report(time, false);
+  record_.add(time, reported_);
+  reportedTime_ = time;
+  if (!jointStates_.empty()) findJointStates(time);
+  return reported_;
+}
+
+const VectorX& IslandSolver::stepToReported() {
+  report(reportedTime_, true);
+  return reported_;
+}
+
+/// Sets the reported state to that at `time`: in a step under way that of its interpolant, or of a step of its own.
+void IslandSolver::report(double time, bool byStep) {
+  if (island_.time <= time + sameTime(time))
     reported_ = island_.state;
   else
-    interpolateAt(time, keepsConstraints());
+    interpolateAt(time, byStep);
   normalizeOrientations(reported_);
   const std::vector<RigidBody>& bodies = island_.assembly.mechanism.bodies;
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (bodies[i].hasConstantSpin) rotate(static_cast<Eigen::Index>(i), time, reported_);
-  record_.add(time, reported_);
-  if (!jointStates_.empty()) findJointStates(time);
-  return reported_;
+}
+
+void IslandSolver::beginSweep(double to) {
+  isSwept_ = true;
+  swept_.begin(reportedTime_, to, reported_);
+  if (island_.time > reportedTime_) swept_.add(island_.step, island_.state);
 }
 
 void IslandSolver::finish() {
   if (promiseEnd_ || !method_.isAdaptive()) return;
   const std::optional<ConservationRecord::Loss> loss = record_.firstLoss();
   if (!loss) return;
-  promiseEnd_ = {loss->time, fmt::format("{} is beyond {:g} times the accuracy", loss->sum, kMaxNumericalRatio),
-                 island_.assembly.sceneBodies};
-  island_.log.warn(fmt::format("{}: the accuracy asked was not kept from {:.6g} s on: {} ({})", island_.scene.path,
-                               loss->time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene)));
+  promiseEnd_ = endOf(*loss, island_.assembly.sceneBodies, island_.scene);
 }
 
 template <class Motion>
@@ -122,14 +147,9 @@ void IslandSolver::changeMotion() {
   if (const auto* events = std::get_if<EventMotion>(&motion_)) {
     const std::string_view reason = events->fallbackReason();
     if (reason.empty()) return;
-    const ChosenMethod steps = contactSteps(isVisual() ? kContactTimeStep : contactTimeStep(island_.assembly));
-    if (!promiseEnd_) endPromise(*events, steps.timeStep);
+    if (!promiseEnd_) endPromise(*events);
     island_.assembly.mechanism.contacts.clear();
-    nextTrial_ = island_.time + trialTime_;
-    trialTime_ *= 2;
-    if (isVisual()) method_ = steps;
-    motion_.emplace<SteppedMotion>(island_, ropes_, steps);
-    return;
+    return changeToSteps();
   }
   const auto& steps = std::get<SteppedMotion>(motion_);
   if (!method_.isAdaptive() || steps.isAtRest()) return;
@@ -139,26 +159,41 @@ void IslandSolver::changeMotion() {
   if (steps.isFree() || steps.mayServeEvents()) motion_.emplace<EventMotion>(island_, ropes_, method_, true);
 }
 
-void IslandSolver::endPromise(const EventMotion& events, double timeStep) {
-  promiseEnd_ = {island_.time, std::string(events.fallbackReason()), events.fallbackBodies()};
-  island_.log.warn(fmt::format(
-      "{}: the accuracy asked is not promised from {:.6g} s on: {} ({}); contact is resolved every {:.3g} s {}",
-      island_.scene.path, island_.time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene),
-      timeStep, isVisual() ? "to the end" : "as long as that lasts"));
+double IslandSolver::contactTimeStep() const {
+  return isVisual() ? kContactTimeStep : cradle::contactTimeStep(island_.assembly);
+}
+
+void IslandSolver::changeToSteps() {
+  const ChosenMethod steps = contactSteps(contactTimeStep());
+  nextTrial_ = island_.time + trialTime_;
+  trialTime_ *= 2;
+  if (isVisual()) method_ = steps;
+  motion_.emplace<SteppedMotion>(island_, ropes_, steps);
+}
+
+void IslandSolver::endPromise(const EventMotion& events) {
+  promiseEnd_ = {island_.time, std::string(events.fallbackReason()), events.fallbackBodies(), {}};
+  promiseEnd_->warning = fmt::format("{}; contact is resolved every {:.3g} s {}", textOf(*promiseEnd_, island_.scene),
+                                     contactTimeStep(), isVisual() ? "to the end" : "as long as that lasts");
 }
 
 void IslandSolver::endPromiseAtDeadPoint(double time) {
-  promiseEnd_ = {time, "constraints take more than the accuracy out of one step, as near a dead point",
-                 island_.assembly.sceneBodies};
-  island_.log.warn(fmt::format("{}: the accuracy asked is not promised from {:.6g} s on: {} ({})", island_.scene.path,
-                               time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene)));
+  promiseEnd_ = {time,
+                 "constraints take more than the accuracy out of one step, as near a dead point",
+                 island_.assembly.sceneBodies,
+                 {}};
+  promiseEnd_->warning = textOf(*promiseEnd_, island_.scene);
 }
 
-void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
+void IslandSolver::interpolateAt(double time, bool byStep) {
+  const bool keepsConstraints = this->keepsConstraints();
   const double fraction = (time - island_.step.time) / island_.step.timeStep;
   interpolate(island_.step, fraction, reported_);
   place(island_.assembly.mechanism.driven, time, reported_);
-  stepWhereForcesJump(time);
+  if (const auto* moved = std::get_if<EventMotion>(&motion_); moved && byStep)
+    withForcesOfStep(*moved, [&] { stepTo(time); });
+  else
+    stepWhereForcesJump(time);
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->addContactMotion(fraction, reported_);
   const Mechanism& mechanism = island_.assembly.mechanism;
   const auto* events = std::get_if<EventMotion>(&motion_);
@@ -205,12 +240,18 @@ void IslandSolver::stepWhereForcesJump(double time) {
     const Eigen::Index first = poseComponents(reported_), count = reported_.size() - kLedgerSize - first;
     const auto size = 1 + reported_.segment(first, count).array().abs();
     const auto defect = (derivative_ - frameStep_.work).segment(first, count).array().abs() / size;
-    if (defect.maxCoeff() * step.timeStep <= kMaxDefect * island_.scene.accuracy) return;
-    frameStep_.startDerivativeIsKnown = false;
-    method_.integrate(frameEquations_.rightHandSide(), step.startState, step.time, time - step.time, frameStep_);
-    reported_ = frameStep_.state;
-    place(island_.assembly.mechanism.driven, time, reported_);
+    if (defect.maxCoeff() * step.timeStep > kMaxDefect * island_.scene.accuracy) stepTo(time);
   });
+}
+
+/// Makes the reported state the end of a step from the same start as the one under way, with the forces of that.
+void IslandSolver::stepTo(double time) {
+  const Step& step = island_.step;
+  setResting(still_);  // bodies that the end of the step has woken have rested in it
+  frameStep_.startDerivativeIsKnown = false;
+  method_.integrate(frameEquations_.rightHandSide(), step.startState, step.time, time - step.time, frameStep_);
+  reported_ = frameStep_.state;
+  place(island_.assembly.mechanism.driven, time, reported_);
 }
 
 template <class Evaluate>
@@ -293,7 +334,7 @@ void IslandSolver::findStill() {
 
 /// Sets the orientation of a body whose angular velocity is constant: the state keeps the orientation of the start.
 void IslandSolver::rotate(Eigen::Index body, double time, VectorX& state) const {
-  turnBody(state, body, time * Vec3(angularVelocity(state, body)));
+  turnBody(state, body, (time - island_.assembly.startTime) * Vec3(angularVelocity(state, body)));
 }
 
 }  // namespace cradle

@@ -9,6 +9,7 @@
 #include "simulate/events/event_motion.h"
 #include "simulate/joint_coordinates.h"
 #include "simulate/steps/stepped_motion.h"
+#include "simulate/swept_bodies.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {
@@ -18,8 +19,10 @@ constexpr double kTrialTime = 0.05;  // s: after that, contacts that were too mu
 /// An island in motion, with a clock of its own. Time goes on in steps of the method.
 class IslandSolver {
  public:
-  /// Keeps a reference to `scene`. The method is one that takes steps.
-  IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method);
+  /// Keeps a reference to `scene`. The method is one that takes steps. `promiseEnd`: of bodies of the island before it
+  /// began to move; it begins in contact steps then.
+  IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method,
+               std::optional<PromiseEnd> promiseEnd = {});
   IslandSolver(const IslandSolver&) = delete;
   IslandSolver& operator=(const IslandSolver&) = delete;
 
@@ -28,6 +31,17 @@ class IslandSolver {
   /// Error(limit) if a step has too many impacts, Error(interrupted). `reached` is told the time (s) after each step;
   /// it may be none.
   const VectorX& stateAt(double time, const std::function<void(double time)>& reached = {});
+
+  /// The state of the last call of stateAt again, at events as exact as an event's: of a step that ends there, and not
+  /// of an interpolant.
+  const VectorX& stepToReported();
+
+  /// Begins to note what the bodies sweep until `to` (s), from the last call of stateAt on; that must not be beyond
+  /// `to`.
+  void beginSweep(double to);
+
+  /// Since the last call of beginSweep, up to the last call of stateAt.
+  const SweptBodies& swept() const { return swept_; }
 
   /// To be called after the last frame: the accuracy asked was not kept if energy or momenta of the frames changed by
   /// more than kMaxNumericalRatio times the accuracy without a cause.
@@ -50,7 +64,9 @@ class IslandSolver {
  private:
   void advance(double time);
   void changeMotion();
-  void endPromise(const EventMotion& events, double timeStep);
+  void changeToSteps();
+  double contactTimeStep() const;
+  void endPromise(const EventMotion& events);
   void endPromiseAtDeadPoint(double time);
   template <class Motion>
   static void advance(double time, Motion& motion);
@@ -59,9 +75,11 @@ class IslandSolver {
   bool isVisual() const { return island_.scene.accuracy > kVisualAccuracy; }
   /// The state of a frame inside a step. Its difference from the energy of the step's start is an error of that frame
   /// alone.
-  void interpolateAt(double time, bool keepsConstraints);
+  void report(double time, bool byStep);
+  void interpolateAt(double time, bool byStep);
   bool mayFrictionTurn(const std::vector<ContactConstraint>& contacts) const;
   void stepWhereForcesJump(double time);
+  void stepTo(double time);
   /// Calls evaluate() with contacts, constraints, pushes and motors as they were in the last step of events.
   template <class Evaluate>
   void withForcesOfStep(const EventMotion& events, const Evaluate& evaluate);
@@ -85,6 +103,9 @@ class IslandSolver {
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not
   std::vector<char> still_;        // bodies that the step has not moved
   VectorX reported_, derivative_;
+  double reportedTime_ = 0;  // s
+  SweptBodies swept_;        // if it is asked for
+  bool isSwept_ = false;
   Step frameStep_;  // that ends at a frame
   std::vector<JointState> jointStates_;
 };

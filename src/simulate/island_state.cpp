@@ -18,6 +18,7 @@ IslandState::IslandState(const Scene& source, Assembly parts)
       resting(assembly.mechanism, assembly.geometry, equations),
       pushes(scene, assembly, log),
       search(assembly.geometry),
+      time(assembly.startTime),
       state(assembly.state),
       motions_(assembly.mechanism.bodies.size()),
       nextJump_(nextJump(assembly.mechanism.driven, time)) {}

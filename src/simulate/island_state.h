@@ -64,9 +64,9 @@ struct IslandState {
   RestingBodies resting;
   PushSchedule pushes;
   ImpactSearch search;
-  double time = 0;  // s
-  VectorX state;    // after all events of now
-  Step step;        // that ended now
+  double time;    // s
+  VectorX state;  // after all events of now
+  Step step;      // that ended now
 
  private:
   BroadPhase broadPhase_;

@@ -3,6 +3,7 @@
 namespace cradle {
 
 JointCoordinates::JointCoordinates(const Assembly& assembly) : assembly_(assembly), last_(assembly.joints.size()) {
+  for (std::size_t i = 0; i < last_.size(); ++i) last_[i] = assembly.joints[i].start;
   beginStep(assembly.state);
 }
 

@@ -15,8 +15,12 @@ constexpr double kWorkRatio = 1;  // of the tolerance of a step: an error in it 
 
 double toleranceOfWork(const ChosenMethod& method, const Mechanism& mechanism, const Step& step) {
   const auto slides = [](const ContactConstraint& contact) { return contact.motion == ContactMotion::sliding; };
-  if (mechanism.driven.empty() || std::any_of(mechanism.contacts.begin(), mechanism.contacts.end(), slides))
+  const auto works = [](const JointMotor& motor) {
+    return motor.mode == JointMotor::Mode::holds && motor.targetVelocity != 0;
+  };
+  if (mechanism.driven.empty() && std::none_of(mechanism.motors.begin(), mechanism.motors.end(), works))
     return INFINITY;
+  if (std::any_of(mechanism.contacts.begin(), mechanism.contacts.end(), slides)) return INFINITY;
   const double tolerance =
       kWorkRatio * method.tolerance * (std::abs(pushWork(step.state)) + kineticEnergy(mechanism.bodies, step.state));
   // The error norm of the work alone: |error| / (tolerance x (1 + |work|)).

@@ -7,10 +7,10 @@
 
 namespace cradle {
 
-/// J: so well the work of driven bodies in a step is to be known where the step's own sum of it may be less exact, else
-/// infinite. Steps are as long as errors of the motion allow: of a body at rest, at which a driven one pulls, as long
-/// as they like, though the pull changes all the time. Where contacts slide the sum is the exact one: it has the very
-/// forces that the step has. `step` is as the integrator has left it.
+/// J: so well the work of driven bodies, and of motors that hold, in a step is to be known where the step's own sum of
+/// it may be less exact, else infinite. Steps are as long as errors of the motion allow: of a body at rest, at which a
+/// driven one pulls, as long as they like, though the pull changes all the time. Where contacts slide the sum is the
+/// exact one: it has the very forces that the step has. `step` is as the integrator has left it.
 double toleranceOfWork(const ChosenMethod& method, const Mechanism& mechanism, const Step& step);
 
 /// The integral of the ledger's rates along the interpolant, from a step's start up to fractions of it, to a tolerance

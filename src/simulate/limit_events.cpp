@@ -21,8 +21,7 @@ constexpr double kSlackRatio = 1e-6;      // of its size: a limit this far away 
 constexpr double kLowestRebound = 1e-6;   // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
 constexpr double kUsualAcceleration = 1;  // m/s^2: tensions are compared with what gives that before others are known
 constexpr double kMinPull = 1e-11;  // of the accelerations that it is the difference of: a pull that is no rounding
-constexpr double kShallowTension = 0.01;        // of the samples beside it: a parabola that is as low may miss a loss
-constexpr int kTensionSamples = 4;              // a step: it is at most a small part of a swing
+constexpr int kTensionSamples = 4;  // a step: it is at most a small part of a swing
 constexpr double kMinFirstSample = 1e-9;        // of a step: a rebound that is over sooner is none
 constexpr double kMaxFirstSample = 1.0 / 1024;  // of a step
 constexpr double kCoarsestInterval = 1.0 / 8;   // of a step, of a limit without tension: its slack is smooth
@@ -131,12 +130,13 @@ LimitEvents::LimitEvents(IslandState& island)
       assembly_(island.assembly),
       equations_(island.equations),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
+      followedTime_(assembly_.startTime),
       sceneConstraints_(assembly_.mechanism.constraints.size()),
       tautRow_(assembly_.limits.size(), -1),
       isStretched_(assembly_.limits.size(), 0),
       tensionScales_(assembly_.limits.size()) {
   for (std::size_t i = 0; i < tensionScales_.size(); ++i) tensionScales_[i] = usualTension(i);
-  followTurns(0, assembly_.state);
+  followTurns(followedTime_, assembly_.state);
 }
 
 /// kg: of the bodies at the limit's ends.
@@ -205,25 +205,14 @@ std::optional<LimitChange> LimitEvents::firstReach(const Step& step, std::size_t
 /// First fraction of the step at which the tension of a taut limit falls below zero, by a few samples of it and the
 /// parabolas through them.
 std::optional<double> LimitEvents::firstTensionLoss(const Step& step, std::size_t limit) {
-  const auto at = [&](double fraction) {
+  const auto tensionAt = [&](double fraction) {
     interpolate(step, fraction, sample_);
-    return Sample{fraction, tension(limit, step.time + fraction * step.timeStep, sample_)};
+    return tension(limit, step.time + fraction * step.timeStep, sample_);
   };
-  const auto lossBetween = [](const Sample& before, const Sample& after) {
-    return after.at - after.value * (after.at - before.at) / (after.value - before.value);
-  };
-  std::array<Sample, 3> samples{{{}, {}, {0, tension(limit, step.time, step.startState)}}};
-  for (int i = 1; i <= kTensionSamples; ++i) {
-    samples = {samples[1], samples[2], at(static_cast<double>(i) / kTensionSamples)};
-    if (samples[1].value > 0 && samples[2].value < 0) return lossBetween(samples[1], samples[2]);
-    // It may be lost for less than the way from one sample to the next.
-    const bool areAbove = i > 1 && samples[0].value > 0 && samples[1].value > 0 && samples[2].value > 0;
-    const std::optional<Sample> least = areAbove ? leastOf(samples) : std::nullopt;
-    if (!least || least->value > kShallowTension * std::max(samples[0].value, samples[2].value)) continue;
-    const Sample found = at(least->at);
-    if (found.value < 0) return lossBetween(samples[found.at < samples[1].at ? 0 : 1], found);
-  }
-  return std::nullopt;
+  std::array<double, kTensionSamples + 1> samples{tension(limit, step.time, step.startState)};
+  for (int i = 1; i <= kTensionSamples; ++i)
+    samples[static_cast<std::size_t>(i)] = tensionAt(1.0 * i / kTensionSamples);
+  return firstFall(tensionAt, samples, 1);  // further ones find rounding where nothing pulls
 }
 
 double LimitEvents::margin(const LimitChange& change, const VectorX& state) {
@@ -423,7 +412,7 @@ void LimitEvents::endImpact(double time, const std::vector<ImpactContact>& impac
 }
 
 void LimitEvents::giveWay(const std::vector<Contact>& touching) {
-  if (assembly_.mechanism.driven.empty()) return;
+  if (touching.empty()) return;
   const auto isDriven = [this](int body) {
     return body != kFixed && assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven();
   };
@@ -432,8 +421,10 @@ void LimitEvents::giveWay(const std::vector<Contact>& touching) {
                        [body](const Contact& contact) { return contact.bodyA == body || contact.bodyB == body; });
   };
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
+    if (!isTaut(i)) continue;
     const auto [a, b] = bodiesOf(assembly_.limits[i]);
-    if (isTaut(i) && ((isDriven(a) && touches(b)) || (isDriven(b) && touches(a)))) tautRow_[i] = -1;
+    const bool isStop = std::holds_alternative<JointLimit>(assembly_.limits[i]);
+    if (((isStop || isDriven(a)) && touches(b)) || ((isStop || isDriven(b)) && touches(a))) tautRow_[i] = -1;
   }
   rebuildConstraints();
 }

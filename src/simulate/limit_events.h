@@ -46,7 +46,8 @@ class LimitEvents {
   bool pullStretched(double time, VectorX& state);
 
   /// Taut ropes from a driven body to one of those that touch are no rods any more, until they lengthen: what drives
-  /// their ends would press bodies by them onto what they touch.
+  /// their ends would press bodies by them onto what they touch. Nor are stops of bodies that touch any joints, as what
+  /// strikes these may open them.
   void giveWay(const std::vector<Contact>& touching);
 
   /// Limits that are reached as members of an impact: they lengthen as contacts close, along the line of their ends.
@@ -98,7 +99,7 @@ class LimitEvents {
   EquationsOfMotion& equations_;
   ConstraintSolver solver_;
   double timeStep_ = 0;
-  double followedTime_ = 0;       // s: when turns were followed last
+  double followedTime_;           // s: when turns were followed last
   std::size_t sceneConstraints_;  // those that are no limits
   std::vector<int> tautRow_;      // of each limit, among the constraints' rows; or -1: no smooth force pulls at it
   struct Member {

@@ -1,15 +1,22 @@
 #include "simulate/motor_events.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "constraints/invariants.h"
+#include "math/parabola.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
+constexpr int kTrials = 3;   // at the least of what is left
 constexpr int kSamples = 4;  // a step, as of the tensions of ropes
+// Of all the force: where a fourth difference of samples is beyond it, neither they nor the interpolant tell what is
+// between them. That of a cosine is there where they are 1/48 of a period apart.
+constexpr double kRough = 3e-4;
+constexpr double kRoughRatio = 0.02;  // of the least of what is left: there, larger differences are no matter
 // Of the largest velocity in a step: so far past its target a motor has come to it. One that leaves it again at once is
 // at it to within rounding, on either side.
 constexpr double kPastTarget = 1e-9;
@@ -40,8 +47,12 @@ double MotorEvents::marginAt(std::size_t index, double time, const VectorX& stat
     return kPastTarget + motor.sign * (motor.targetVelocity - velocity(index, state)) / scales_[index];
   island_.equations.evaluate(time, state, derivative_);
   const auto at = static_cast<Eigen::Index>(index);
-  return std::min((motor.maxForce - std::abs(island_.equations.motorForces()[at])) / motor.maxForce,
-                  1 - island_.equations.motorContradictions()[at]);
+  forceLeft_ = 1 - std::abs(island_.equations.motorForces()[at]) / motor.maxForce;
+  return std::min(forceLeft_, 1 - island_.equations.motorContradictions()[at]);
+}
+
+double MotorEvents::smoothPart() const {
+  return roughness_ > 0 ? std::sqrt(std::sqrt(1 / roughness_)) : INFINITY;
 }
 
 double MotorEvents::margin(const MotorChange& change, const VectorX& state) {
@@ -51,25 +62,31 @@ double MotorEvents::margin(const MotorChange& change, const VectorX& state) {
 std::optional<MotorChange> MotorEvents::firstChange(const Step& step) {
   std::optional<MotorChange> first;
   std::vector<double> fractions;
+  roughness_ = 0;
   for (std::size_t i = 0; i < motors().size(); ++i) {
     const JointMotor& motor = motors()[i];
     if (!motor.hasTarget || motor.maxForce == 0 || rests(i)) continue;
     scales_[i] = std::max({std::abs(motor.targetVelocity - velocity(i, step.startState)),
                            std::abs(motor.targetVelocity - velocity(i, step.state)), std::abs(motor.targetVelocity)});
     if (scales_[i] == 0) scales_[i] = 1;
-    double before = marginAt(i, step.time, step.startState);
-    for (int k = 1; k <= kSamples; ++k) {
-      const double fraction = static_cast<double>(k) / kSamples;
+    const auto margin = [&](double fraction) {
       interpolate(step, fraction, sample_);
-      const double after = marginAt(i, step.time + fraction * step.timeStep, sample_);
-      if (before >= 0 && after < 0) {
-        const double found = fraction - after / (after - before) / kSamples;
-        fractions.push_back(found);
-        if (!first || found < first->fraction) first = MotorChange{found, i};
-        break;
-      }
-      before = after;
+      return marginAt(i, step.time + fraction * step.timeStep, sample_);
+    };
+    std::array<double, kSamples + 1> samples, forces;
+    for (std::size_t k = 0; k <= kSamples; ++k) {
+      samples[k] = k > 0 ? margin(static_cast<double>(k) / kSamples) : marginAt(i, step.time, step.startState);
+      forces[k] = forceLeft_;
     }
+    const auto& [a, b, c, d, e] = forces;
+    if (motor.mode == JointMotor::Mode::holds) {
+      const double known = std::max(kRough, kRoughRatio * *std::min_element(forces.begin(), forces.end()));
+      roughness_ = std::max(roughness_, std::abs(a - 4 * b + 6 * c - 4 * d + e) / known);
+    }
+    const std::optional<double> found = firstFall(margin, samples, kTrials);
+    if (!found) continue;
+    fractions.push_back(*found);
+    if (!first || *found < first->fraction) first = MotorChange{*found, i};
   }
   for (const double fraction : fractions)
     if (fraction > first->fraction + kAtOnce) first->latest = std::min(first->latest, fraction);

@@ -27,6 +27,11 @@ class MotorEvents {
   /// The first change within a step, whose end derivative must be there (prepareInterpolant).
   std::optional<MotorChange> firstChange(const Step& step);
 
+  /// Of the step of the last call of firstChange: a step of which length would have the force of motors that hold known
+  /// between its samples, as its fourth differences grow with the fourth power of that. Below 1, the step is too long:
+  /// a body that motors hold has no error, however long a step is.
+  double smoothPart() const;
+
   /// Zero where the change happens, positive before: the force that is left as a part of all, or the velocity that is
   /// missing as a part of the largest in the step. `state` is that of the step's end.
   double margin(const MotorChange& change, const VectorX& state);
@@ -44,6 +49,8 @@ class MotorEvents {
 
   IslandState& island_;
   std::vector<double> scales_;  // m/s or rad/s, of each motor's velocity in the step under way
+  double forceLeft_ = 0;        // of all the force: of the motor that holds and whose margin was asked for last
+  double roughness_ = 0;        // fourth differences of that in the step under way, over those that would tell
   std::vector<BodyFrame> frames_;
   VectorX derivative_, sample_;
 };

@@ -56,12 +56,20 @@ void World::decideStartPromises(const Scene& scene) {
 }
 
 void World::notePromiseEnds() {
-  for (std::size_t i = 0; i < solvers_.size(); ++i) {
-    std::optional<PromiseEnd>& known = promiseEnds_[islandOfSolver_[i]];
-    if (known || !solvers_[i]->promiseEnd()) continue;
-    known = solvers_[i]->promiseEnd();
+  forEachSolver([this](const auto& solver, std::size_t island) {
+    std::optional<PromiseEnd>& known = promiseEnds_[island];
+    if (known || !solver.promiseEnd()) return;
+    known = solver.promiseEnd();
     newEnds_.push_back(*known);
-  }
+    warnings_.push_back(known->warning);
+  });
+}
+
+/// Calls visit(solver, island) with the index of its island in the plan.
+template <class Visit>
+void World::forEachSolver(const Visit& visit) const {
+  for (std::size_t i = 0; i < solvers_.size(); ++i) visit(*solvers_[i], islandOfSolver_[i]);
+  for (std::size_t i = 0; i < groups_.size(); ++i) visit(*groups_[i], islandOfGroup_[i]);
 }
 
 std::vector<PromiseEnd> World::takePromiseEnds() {
@@ -83,6 +91,11 @@ void World::move(const Scene& scene, std::size_t index, Assembly assembly) {
       return;
     case MotionKind::fixedSteps:
     case MotionKind::errorSteps:
+      if (IslandGroup::mayDivide(scene, island)) {
+        groups_.push_back(std::make_unique<IslandGroup>(scene, island, std::move(assembly)));
+        islandOfGroup_.push_back(index);
+        return;
+      }
       solvers_.push_back(std::make_unique<IslandSolver>(scene, std::move(assembly), island.method));
       islandOfSolver_.push_back(index);
   }
@@ -100,12 +113,13 @@ void World::addFlight(Assembly assembly) {
 Frame World::frameAt(long number, double time, const std::function<void(double time)>& reached) {
   throwIfInterrupted();
   Frame frame{number, time, std::vector<BodyState>(moving_), {}, std::vector<JointState>(joints_)};
-  const auto add = [&](const auto& simulation, const auto&... told) {
-    addTo(frame, simulation->assembly(), simulation->stateAt(time, told...));
-    const std::vector<Event> events = simulation->takeEvents();
+  const auto add = [&](auto& simulation, const auto&... told) {
+    addTo(frame, simulation.assembly(), simulation.stateAt(time, told...));
+    const std::vector<Event> events = simulation.takeEvents();
     events_.insert(events_.end(), events.begin(), events.end());
   };
-  const double island = 1.0 / static_cast<double>(std::max<std::size_t>(1, solvers_.size()));  // of all
+  const double island =
+      1.0 / static_cast<double>(std::max<std::size_t>(1, solvers_.size() + groups_.size()));  // of all
   std::size_t done = 0;
   std::function<void(double)> tellMean;
   if (reached)
@@ -113,16 +127,16 @@ Frame World::frameAt(long number, double time, const std::function<void(double t
       const double ofFrame = static_cast<double>(done) * (time - lastTime_);
       reached(lastTime_ + island * (ofFrame + std::min(now, time) - lastTime_));
     };
-  for (const auto& simulation : solvers_) {
+  forEachSolver([&](auto& simulation, std::size_t) {
     add(simulation, tellMean);
-    for (std::size_t i = 0; i < simulation->jointStates().size(); ++i)
-      frame.joints[simulation->assembly().joints[i].index] = simulation->jointStates()[i];
+    for (std::size_t i = 0; i < simulation.jointStates().size(); ++i)
+      frame.joints[simulation.assembly().joints[i].index] = simulation.jointStates()[i];
     ++done;
-  }
+  });
   lastTime_ = time;
   notePromiseEnds();
-  for (const auto& spheres : spheres_) add(spheres);
-  for (const auto& pile : softIslands_) add(pile);
+  for (const auto& spheres : spheres_) add(*spheres);
+  for (const auto& pile : softIslands_) add(*pile);
   for (FlyingIsland& island : flying_) {
     for (const FreeFlight& flight : island.flights) flight.moveTo(time, island.assembly.state);
     island.evaluations += std::ssize(island.flights);
@@ -137,7 +151,7 @@ Frame World::frameAt(long number, double time, const std::function<void(double t
 }
 
 void World::finish() {
-  for (const auto& solver : solvers_) solver->finish();
+  forEachSolver([](auto& solver, std::size_t) { solver.finish(); });
   notePromiseEnds();
 }
 
@@ -162,16 +176,18 @@ std::vector<Event> World::takeEvents(double time) {
 }
 
 std::vector<std::string> World::takeWarnings() {
-  std::vector<std::string> warnings;
-  for (const auto& simulation : solvers_)
-    for (std::string& warning : simulation->takeWarnings()) warnings.push_back(std::move(warning));
+  std::vector<std::string> warnings = std::exchange(warnings_, {});
+  forEachSolver([&](auto& solver, std::size_t) {
+    for (std::string& warning : solver.takeWarnings()) warnings.push_back(std::move(warning));
+  });
   return warnings;
 }
 
 std::vector<Correction> World::takeCorrections() {
   std::vector<Correction> all, first;
-  for (const auto& simulation : solvers_)
-    for (Correction& correction : simulation->corrections().takeFirst()) all.push_back(std::move(correction));
+  forEachSolver([&](auto& solver, std::size_t) {
+    for (Correction& correction : solver.corrections().takeFirst()) all.push_back(std::move(correction));
+  });
   std::stable_sort(all.begin(), all.end(), [](const Correction& a, const Correction& b) { return a.time < b.time; });
   for (Correction& correction : all)
     if (!std::exchange(isToldOf_[static_cast<std::size_t>(correction.kind)], 1)) first.push_back(std::move(correction));
@@ -180,13 +196,13 @@ std::vector<Correction> World::takeCorrections() {
 
 std::map<std::string, long> World::correctionCounts() const {
   std::map<std::string, long> counts;
-  for (const auto& simulation : solvers_) simulation->corrections().addCounts(counts);
+  forEachSolver([&](auto& solver, std::size_t) { solver.corrections().addCounts(counts); });
   return counts;
 }
 
 long World::evaluations() const {
   long sum = 0;
-  for (const auto& simulation : solvers_) sum += simulation->evaluations();
+  forEachSolver([&](const auto& solver, std::size_t) { sum += solver.evaluations(); });
   for (const auto& spheres : spheres_) sum += spheres->evaluations();
   for (const auto& pile : softIslands_) sum += pile->evaluations();
   for (const FlyingIsland& island : flying_) sum += island.evaluations;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dynamics/free_flight.h"
-#include "simulate/island_solver.h"
+#include "simulate/island_group.h"
 #include "simulate/soft_substeps.h"
 #include "simulate/spheres/hard_spheres.h"
 
@@ -74,10 +74,15 @@ class World {
   Plan plan_;
   std::vector<std::string> startWarnings_;
   bool hasLongSteps_ = false;
+  template <class Visit>
+  void forEachSolver(const Visit& visit) const;
+
   std::vector<std::unique_ptr<IslandSolver>> solvers_;
-  std::vector<std::size_t> islandOfSolver_;             // of the plan
-  std::vector<std::optional<PromiseEnd>> promiseEnds_;  // by island
-  std::vector<PromiseEnd> newEnds_;                     // not yet taken
+  std::vector<std::unique_ptr<IslandGroup>> groups_;
+  std::vector<std::size_t> islandOfSolver_, islandOfGroup_;  // of the plan
+  std::vector<std::optional<PromiseEnd>> promiseEnds_;       // by island
+  std::vector<PromiseEnd> newEnds_;                          // not yet taken
+  std::vector<std::string> warnings_;                        // not yet taken
   std::vector<FlyingIsland> flying_;
   std::vector<std::unique_ptr<HardSpheres>> spheres_;
   std::vector<std::unique_ptr<SoftSubsteps>> softIslands_;

@@ -151,6 +151,22 @@ TEST(JointLimits, LightBodyStrikesTheStopOfAHeavyOne) {
   expectLedger(moved, 1e-12, 1e-10);
 }
 
+/// A body of 2 kg that a force presses on its stop is struck by one of 1 kg at v: without restitution both go on with
+/// v / 3, in steps of one length as at events. The stop does not hold it back.
+TEST(JointLimits, LoadedStopHoldsNothingThatLeavesIt) {
+  for (const char* method : {"", R"("method": {"name": "rk4", "timeStep": 0.001}, )"}) {
+    const Trajectory moved =
+        runStopped(0.7, 1e-6, R"({"name": "buffer", "mass": 2, "shape": {"box": {"size": [0.2, 0.2, 0.2]}}},
+        {"name": "ball", "mass": 1, "shape": {"sphere": {"radius": 0.1}}, "position": [-1, 0, 0],
+         "linearVelocity": [2, 0, 0]})",
+                   fmt::format(R"({}"gravity": [0, 0, 0], "sliders": [{{"bodyA": "buffer", "anchorB": [0, 0, 0],
+        "axis": [1, 0, 0], "limits": {{"lower": 0}}, "motor": {{"force": -1}}}}],)",
+                               method));
+    // At 0.4 s, and with the force of 1 N on 3 kg from then on.
+    EXPECT_NEAR(moved.frames.back().joints[0].velocity, 2.0 / 3 - (0.7 - 0.4) / 3, 1e-6) << method;
+  }
+}
+
 /// A gate, shut at one stop, that a ball knocks open to the other: the bodies' impact and the gate's later hit.
 TEST(JointLimits, BallKnocksAGateOpen) {
   const Trajectory moved =

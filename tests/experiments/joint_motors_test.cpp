@@ -137,6 +137,65 @@ TEST(JointMotors, MotorComesToTheEndOfItsForce) {
   expectLedger(moved, 1e-11, 1e-8);
 }
 
+/// A motor turns a rod, I = m l^2 / 3 + m w^2 / 12 about its end, at w, against m g l / 2 sin(q). It has f m g l / 2:
+/// at sin(q) = f it is at its end, and I q'^2 / 2 - m g l / 2 cos(q) - T q stays from then on, until the rod is back at
+/// w, behind the top of its load, however short that is.
+TEST(JointMotors, ForceThatIsMissingForAMomentIsMissed) {
+  const double weight = 2 * kGravity / 2, inertia = 2 / 3.0 + 2 * 0.0025 / 12;
+  for (const double accuracy : {1e-3, 1e-6, 1e-9})
+    for (const double part : {0.9, 0.97, 0.995, 0.999})
+      for (const double rate : {0.1, 0.4, 2.0}) {
+        const double most = part * weight, end = std::asin(part), duration = 2.2 / rate;
+        const Trajectory moved =
+            runMotor(duration, accuracy, R"({"name": "rod", "mass": 2, "shape": {"box": {"size": [0.05, 1, 0.05]}},
+            "position": [0, -0.5, 0], "collision": "none"})",
+                     fmt::format(R"("hinges": [{{"bodyA": "rod", "anchorA": [0, 0.5, 0], "anchorB": [0, 0, 0],
+            "motor": {{"targetVelocity": {}, "maxTorque": {}}}}}])",
+                                 rate, most));
+        const double energy = inertia * rate * rate / 2 - weight * std::cos(end) - most * end;
+        int pushing = 0;
+        for (const Frame& frame : moved.frames) {
+          const auto& [angle, velocity, force] = frame.joints[0];
+          EXPECT_LE(force, most * (1 + 1e-6)) << accuracy << " " << part << " " << rate << " at " << frame.time;
+          if (angle < end) continue;
+          if (velocity > rate * (1 - 1e-9)) continue;
+          ++pushing;
+          EXPECT_EQ(force, most);
+          const double now = inertia * velocity * velocity / 2 - weight * std::cos(angle) - most * angle;
+          EXPECT_NEAR(now, energy, 100 * accuracy * weight) << part << " " << rate << " at " << frame.time;
+        }
+        EXPECT_GT(pushing, 0) << part << " " << rate;
+      }
+}
+
+/// A motor moves a body at v past the anchor of a spring: what it works is what the spring has, k (r - L)^2 / 2,
+/// whatever the length of steps that have no error.
+TEST(JointMotors, WorkAgainstASpringIsTheSprings) {
+  for (const double accuracy : {1e-3, 1e-6, 1e-9}) {
+    const Trajectory moved =
+        runMotor(4, accuracy, kMotorBox, R"("gravity": [0, 0, 0], "sliders": [{"bodyA": "box", "anchorB": [0, 0, 0],
+        "axis": [1, 0, 0], "motor": {"targetVelocity": 0.5, "maxForce": 1e3}}], "springs": [{"bodyA": "box",
+        "anchorB": [1, 1, 0], "stiffness": 20, "restLength": 1.4142135623730951}])");
+    for (const Frame& frame : moved.frames) {
+      if (frame.time < 0.1) continue;
+      const double length = std::hypot(frame.states[0].position.x() - 1, 1), more = length - std::sqrt(2.0);
+      EXPECT_NEAR(frame.energy.work, 2 * 0.5 * 0.5 / 2 + 20 * more * more / 2, 10 * accuracy) << frame.time;
+      EXPECT_NEAR(frame.energy.numerical, 0, 10 * accuracy) << frame.time;
+    }
+  }
+}
+
+/// A torque from rest by every method: w = T t / I, as no step has any energy before it.
+TEST(JointMotors, TorqueFromRestByEveryMethod) {
+  for (const char* method : {"explicitEuler", "semiImplicitEuler", "rk4"}) {
+    const Trajectory moved = runMotor(1, 1e-3, kMotorBox,
+                                      fmt::format(R"("gravity": [0, 0, 0], "method": {{"name": "{}", "timeStep": 1e-3}},
+        "hinges": [{{"bodyA": "box", "anchorB": [0, 0, 0], "motor": {{"torque": 0.06}}}}])",
+                                                  method));
+    EXPECT_NEAR(endOf(moved).angularVelocity.z(), 0.06 / kInertia, 1e-9) << method;
+  }
+}
+
 constexpr double kCarWheel = 0.1, kCarMass = 4 + 4;  // m, kg
 constexpr double kCarInertia = kCarMass + 4 * 0.4;   // kg: and 4 I / r^2 of its wheels
 

@@ -54,13 +54,13 @@ TEST(StrictWatch, AllowsOverlapsOfWhatIsNotPromisedUpToATenthOfTheRadius) {
 TEST(StrictWatch, TellsTheFirstFaultInTheOrderOfTimeOnceAFrameShowsIt) {
   const Scene scene = sphereOnGround();
   StrictWatch watch(scene, planOf(scene));
-  watch.note(PromiseEnd{0.4, "edges touch and press", {0, 1}});
+  watch.note(PromiseEnd{0.4, "edges touch and press", {0, 1}, {}});
   watch.note(Correction{CorrectionKind::clampedEnergy, 0.3, {1}, 2});
   EXPECT_EQ(saidOf(0, watch, 0.29), "");
   EXPECT_THAT(saidOf(0, watch, 0.5),
               HasSubstr("strict: experiment.json: at 0.3 s contact would have given \"sphere\""));
   StrictWatch other(scene, planOf(scene));
-  other.note(PromiseEnd{0.4, "edges touch and press", {0, 1}});
+  other.note(PromiseEnd{0.4, "edges touch and press", {0, 1}, {}});
   EXPECT_THAT(saidOf(0, other, 0.4),
               HasSubstr("strict: at 0.4 s the accuracy asked was given up: edges touch and press (ground, sphere)"));
 }
@@ -69,7 +69,7 @@ TEST(StrictWatch, TellsInTheEndWhatOnlyTheEndShows) {
   const Scene scene = sphereOnGround();
   StrictWatch watch(scene, planOf(scene));
   EXPECT_NO_THROW(watch.finish());
-  watch.note(PromiseEnd{0.4, "numerical energy is beyond 10 times the accuracy", {1}});
+  watch.note(PromiseEnd{0.4, "numerical energy is beyond 10 times the accuracy", {1}, {}});
   EXPECT_THROW(watch.finish(), Error);
 }
 

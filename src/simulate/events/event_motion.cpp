@@ -26,8 +26,9 @@ constexpr double kTieRounding = 1e-12;
 constexpr double kMaxStepRatio = 1.0 / 8;  // of what a driven body takes to come to its like
 // Of a step near a dead point, one after the other: a stage within 1e-4 rad of the point itself spoils any of them.
 constexpr double kLengthsAcross[] = {1, 1.6, 2.7, 6, 15};
-constexpr int kMaxDoubts = 20;      // steps for one event that the interpolant has and the step may not
-constexpr int kMaxMotorRounds = 3;  // of motors and contacts; those that change each other go on in the next step
+constexpr double kSmoothRatio = 0.9;  // of the longest step in which forces of motors would be known
+constexpr int kMaxDoubts = 20;        // steps for one event that the interpolant has and the step may not
+constexpr int kMaxMotorRounds = 3;    // of motors and contacts; those that change each other go on in the next step
 
 const EventRateLimit& eventRateLimitOf(const ChosenMethod& method, double accuracy, bool isTrial) {
   if (method.keepsPromise) return kLongEventRateLimit;
@@ -123,10 +124,8 @@ void EventMotion::advance(double frame) {
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
   const Mechanism& mechanism = island_.assembly.mechanism;
   contactsOfStep_ = mechanism.contacts;
-  if (!mechanism.driven.empty() || !mechanism.motors.empty() || !mechanism.contacts.empty()) {
-    constraintsOfStep_ = mechanism.constraints, pushesOfStep_ = mechanism.pushes;
-    motorsOfStep_ = mechanism.motors;
-  }
+  constraintsOfStep_ = mechanism.constraints, pushesOfStep_ = mechanism.pushes;
+  motorsOfStep_ = mechanism.motors;
 
   ledgerOfStep_.reset();
   if (std::isfinite(toleranceOfWork_)) {
@@ -262,7 +261,7 @@ double EventMotion::longestStep() const {
   if (!mechanism.contacts.empty() || ropes_.hasLimits())
     for (const DrivenBody& driven : mechanism.driven)
       longest = std::min(longest, kMaxStepRatio * timeScale(driven.motion, island_.time));
-  return longest;
+  return std::min(longest, longestHeld_);
 }
 
 /// Whether the step may end on its interpolant, which is as accurate as the step: that of DOPRI5.
@@ -301,6 +300,13 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   Step& step = island_.step;
   Event event = findFirstEvent();
   const double whole = step.timeStep, latest = event.latest * whole;
+  const double smooth = motors_.smoothPart();
+  longestHeld_ = kSmoothRatio * smooth * whole;
+  if (smooth < 1) {
+    event = {};
+    event.doubtful = longestHeld_;
+    return event;
+  }
   if (event.any() && mayEndAnywhere()) {
     cutAtEvent(event);
   } else if (event.impact) {

@@ -46,8 +46,7 @@ class EventMotion {
   /// Contacts that were active over the last step.
   const std::vector<ContactConstraint>& contactsOfStep() const { return contactsOfStep_; }
 
-  /// Ties, pushes and motors that acted in the last step of an island with driven bodies, motors or contacts; what
-  /// ended it may have changed them.
+  /// Ties, pushes and motors that acted in the last step; what ended it may have changed them.
   const Constraints& constraintsOfStep() const { return constraintsOfStep_; }
   const std::vector<PushForce>& pushesOfStep() const { return pushesOfStep_; }
   const std::vector<JointMotor>& motorsOfStep() const { return motorsOfStep_; }
@@ -130,6 +129,7 @@ class EventMotion {
   StepSize stepSize_;
   std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch
   std::size_t lengthIndex_ = 0;
+  double longestHeld_ = INFINITY;       // s: of the next step, for what motors hold
   int shortSteps_ = 0, slowSteps_ = 0;  // in a row
   bool areForcesUnbounded_ = false;     // friction is: no step is accurate
   bool isContinuous_ = false;           // nothing has changed the state since the last step's end

@@ -36,6 +36,7 @@ struct PromiseEnd {
   double time = 0;  // s
   std::string reason;
   std::vector<int> bodies;  // of the scene
+  std::string warning;      // a sentence about it
 };
 
 /// The promise of an island whose method is chosen, by the shapes and reaches of its bodies: events serve contacts of

@@ -97,7 +97,7 @@ TEST(PlanText, TellsTheOutcomeOfEachKindOfIsland) {
   Plan plan;
   plan.islands = {islandOf({1}, kAdaptive, conditional_), islandOf({2}, kAdaptive, conditional_),
                   islandOf({3}, kTenths, none_), islandOf({4}, kAdaptive, conditional_)};
-  const std::vector<std::optional<PromiseEnd>> ends = {{}, PromiseEnd{0.25, "it jams", {2}}, {}, {}};
+  const std::vector<std::optional<PromiseEnd>> ends = {{}, PromiseEnd{0.25, "it jams", {2}, {}}, {}, {}};
   EXPECT_EQ(describeOutcome(plan, ends, scene),
             "a; 1 more islands alike: promised while nothing jams; kept\n"
             "b: promised while nothing jams; given up at 0.25 s, because it jams (b)\n"
