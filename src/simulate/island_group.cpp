@@ -105,8 +105,7 @@ const VectorX& IslandGroup::stateAt(double time, const std::function<void(double
 }
 
 void IslandGroup::finish() {
-  if (const auto loss = record_.firstLoss(); loss && !promiseEnd_)
-    promiseEnd_ = endOf(*loss, all_.sceneBodies, scene_);
+  if (const auto loss = record_.firstLoss(); loss && !promiseEnd_) promiseEnd_ = endOf(*loss, all_.sceneBodies, scene_);
 }
 
 long IslandGroup::evaluations() const {
@@ -239,7 +238,9 @@ IslandPlan IslandGroup::planOf(const std::vector<int>& clusters) const {
   IslandPlan part;
   std::vector<std::size_t> links;
   part.touching = fixed_;
-  const auto add = [](const std::vector<int>& from, std::vector<int>& to) { to.insert(to.end(), from.begin(), from.end()); };
+  const auto add = [](const std::vector<int>& from, std::vector<int>& to) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
   for (const int cluster : clusters) {
     add(clusters_[static_cast<std::size_t>(cluster)], part.bodies);
     const std::vector<std::size_t>& tied = linksOfCluster_[static_cast<std::size_t>(cluster)];
@@ -291,9 +292,8 @@ IslandGroup::Island IslandGroup::makeIsland(const std::vector<int>& clusters, co
 
   std::optional<PromiseEnd> end;
   for (const Island& old : before) {
-    if (std::none_of(old.clusters.begin(), old.clusters.end(), [&](int cluster) {
-          return std::binary_search(clusters.begin(), clusters.end(), cluster);
-        }))
+    if (std::none_of(old.clusters.begin(), old.clusters.end(),
+                     [&](int cluster) { return std::binary_search(clusters.begin(), clusters.end(), cluster); }))
       continue;
     if (const auto& given = old.promiseEndAtStart; given && !end) end = given;
   }

@@ -26,8 +26,8 @@ namespace cradle {
 /// happens on both sides of a mirror image, once in contact, stays at one instant.
 class IslandGroup {
  public:
-  /// Whether an island of the plan may be moved as several: its steps are as long as the error allows, some of its bodies
-  /// are not tied to each other, and no push acts on any.
+  /// Whether an island of the plan may be moved as several: its steps are as long as the error allows, some of its
+  /// bodies are not tied to each other, and no push acts on any.
   static bool mayDivide(const Scene& scene, const IslandPlan& plan);
 
   /// Keeps references to `scene` and `plan`. `all` is that island at time 0.
@@ -95,15 +95,15 @@ class IslandGroup {
   const IslandPlan& plan_;
   Assembly all_;
   ConservationRecord record_;
-  std::vector<std::vector<int>> clusters_;  // scene bodies that are tied to each other, ascending
-  std::vector<int> clusterOfBody_;          // by moving body; -1: driven
+  std::vector<std::vector<int>> clusters_;                // scene bodies that are tied to each other, ascending
+  std::vector<int> clusterOfBody_;                        // by moving body; -1: driven
   std::vector<std::vector<std::size_t>> linksOfCluster_;  // indices into the plan's
   std::vector<int> fixed_;                                // scene bodies that may be touched, ascending
   std::vector<std::size_t> islandOfCluster_;
-  std::vector<Island> islands_;  // in the order of their first clusters
-  Snapshot start_;               // of the window under way
+  std::vector<Island> islands_;      // in the order of their first clusters
+  Snapshot start_;                   // of the window under way
   Ledger settled_ = Ledger::Zero();  // J: ledgers of islands that are no more
-  std::deque<Snapshot> frames_;        // that were not asked for yet; the first is the last one that was
+  std::deque<Snapshot> frames_;      // that were not asked for yet; the first is the last one that was
   long nextFrame_ = 0;
   std::vector<Event> events_;
   std::vector<std::string> warnings_;

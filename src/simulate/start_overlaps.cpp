@@ -167,7 +167,14 @@ void moveAllApart(const Scene& scene, const std::vector<StartOverlap>& overlaps,
     moveApart(assembly);
     left = overlapsOf(scene, assembly, kMaxFaultsCounted);
   }
-  addFaults(left, ", and what is around holds them together", faults);
+  // Told is how deep they were before they were pushed.
+  for (StartOverlap& overlap : left)
+    for (const StartOverlap& before : overlaps)
+      if (&before.a == &overlap.a && &before.b == &overlap.b) overlap.depth = before.depth;
+  addFaults(left,
+            ", and what is around holds them together: mend their places in the scene, or those of what ties and "
+            "supports them",
+            faults);
   for (const StartOverlap& overlap : overlaps)
     assembly.warnings.push_back(textOf(overlap) + "; they were moved apart before the run");
 }

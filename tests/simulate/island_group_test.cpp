@@ -37,7 +37,8 @@ struct Grouped {
 };
 
 std::string groundText(const std::string& material) {
-  return fmt::format(R"({{"name": "ground", "shape": {{"plane": {{}}}}, "motion": "static", "material": "{}"}})", material);
+  return fmt::format(R"({{"name": "ground", "shape": {{"plane": {{}}}}, "motion": "static", "material": "{}"}})",
+                     material);
 }
 
 /// An elastic ball of 1 kg and 0.1 m that spins, on a level ground without friction.
@@ -92,10 +93,10 @@ TEST(IslandGroup, BodiesApartMoveAsIfAlone) {
   for (long frame = 0; frame <= 100; ++frame) states.push_back(together.stateAt(frame));
   std::vector<Event> alone;
   for (int i = 0; i < 3; ++i) {
-    const Scene scene = sceneWith(fmt::format(R"("duration": 1, "accuracy": {}, "materials": {{"rubber":
+    const Scene scene =
+        sceneWith(fmt::format(R"("duration": 1, "accuracy": {}, "materials": {{"rubber":
         {{"restitution": 0.6, "staticFriction": 0.5, "dynamicFriction": 0.4}}}}, "bodies": [{}{}])",
-                                              kGroupAccuracy, groundText("rubber"),
-                                              tumblingBox("box", 5 * i, heights[i])));
+                              kGroupAccuracy, groundText("rubber"), tumblingBox("box", 5 * i, heights[i])));
     const IslandPlan island = planOf(scene).islands.at(0);
     IslandSolver solver(scene, assemble(scene, island), island.method);
     for (long frame = 0; frame <= 100; ++frame) {
@@ -117,9 +118,9 @@ TEST(IslandGroup, BodiesApartMoveAsIfAlone) {
 TEST(IslandGroup, BallsMeetInEveryWindow) {
   for (const double velocity : {0.3, 2.0, 40.0, 700.0}) {
     const double gap = 0.4 * velocity, duration = 1;
-    Grouped at(withBox(rollingBall("a", 0, velocity) + rollingBall("b", gap + 0.2, 0) +
-                       rollingBall("c", 1.5 * gap + 0.4, 0)),
-               duration);
+    Grouped at(
+        withBox(rollingBall("a", 0, velocity) + rollingBall("b", gap + 0.2, 0) + rollingBall("c", 1.5 * gap + 0.4, 0)),
+        duration);
     for (long frame = 0; frame <= 100; ++frame) {
       const double t = frameTime(at.scene, frame);
       const VectorX state = at.stateAt(frame);
@@ -188,7 +189,7 @@ TEST(IslandGroup, MetIslandsMoveAsOne) {
 // What took energy stays in the ledger when islands merge and part, and there is no energy from nowhere.
 TEST(IslandGroup, KeepsItsLedger) {
   Grouped at(R"("bodies": [)" + groundText("rubber") + tumblingBox("a", 0, 0.4) + tumblingBox("b", 0.05, 1) +
-             tumblingBox("c", 3, 0.5) + "]",
+                 tumblingBox("c", 3, 0.5) + "]",
              0.8);
   double impact = 0, friction = 0;
   const double constant = energyConstant(at.group.assembly().mechanism, at.stateAt(0));
@@ -233,7 +234,7 @@ TEST(IslandGroup, JointsCountTheirTurnsOn) {
 // A ball that a spring holds at its centre turns by w t, whatever its other end, a box, meets.
 TEST(IslandGroup, HeldBallsTurnOn) {
   Grouped at(R"("bodies": [)" + groundText("rubber") + tumblingBox("a", 0, 0.4) + tumblingBox("b", 0.05, 2) +
-             R"(, {"name": "held", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "collision": "none",
+                 R"(, {"name": "held", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "collision": "none",
       "position": [0.5, 0.5, 0], "angularVelocity": [1, 2, 2]}],
       "springs": [{"bodyA": "held", "anchorA": [0, 0, 0], "bodyB": "a", "stiffness": 20}])",
              0.8);

@@ -254,7 +254,13 @@ TEST(StartOverlaps, ThatNothingCanMendAreRefused) {
   // A ball 10 mm too wide for the gap between two walls.
   EXPECT_THAT(refusalOf(all({box("left", -0.595, R"(, "motion": "static")"), ball("a", 0),
                              box("right", 0.595, R"(, "motion": "static")")})),
-              HasSubstr("holds them together"));
+              HasSubstr("overlap by 5 mm at the start, and what is around holds them together: mend"));
+  // Boxes that a hinge with `collide` keeps where they are: as deep as they were, whatever was tried.
+  EXPECT_THAT(refusalOf(R"({"name": "a", "shape": {"box": {"size": [1, 0.2, 0.2]}}, "position": [0, 2, 0]},
+      {"name": "b", "shape": {"box": {"size": [1, 0.2, 0.2]}}, "position": [0.98, 2, 0]})",
+                        R"(, "hinges": [{"bodyA": "a", "bodyB": "b", "anchorA": [0.49, 0, 0], "anchorB": [-0.49, 0, 0],
+      "collide": true}])"),
+              HasSubstr("overlap by 20 mm"));
 }
 
 TEST(StartOverlaps, OfWhatCannotTouchDoNotMatter) {
