@@ -10,7 +10,9 @@
 //                           several the last), and in which process
 //
 // Of memory those requests count that come from the program's own code (templates of the standard library are part of
-// it): libraries have failures of their own. stdio is left out save its fopen: its other calls stay inside of libc.
+// it): libraries have failures of their own. Nor do those count that libraries make while they are loaded, by templates
+// of the standard library that they share with the program. stdio is left out save its fopen: its other calls stay
+// inside of libc.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -30,6 +32,7 @@
 #include <cstring>
 #include <new>
 #include <string_view>
+#include <utility>
 
 // The allocator of libc by its own names: dlsym itself asks for memory.
 extern "C" void* __libc_malloc(std::size_t) noexcept;
@@ -59,6 +62,8 @@ struct Choice {
   Report* report = nullptr;                   // null until main
 };
 Choice choice;
+
+thread_local bool isLoading = false;  // a library, in this thread
 
 template <class Function>
 Function* next(const char* name) {
@@ -109,7 +114,7 @@ ssize_t writing(const char* call, int file, std::size_t size, const Write& write
 
 bool isWithoutMemory(std::size_t size, const void* caller) {
   const auto place = reinterpret_cast<std::uintptr_t>(caller);
-  if (choice.report == nullptr || place < choice.codeBegin || place >= choice.codeEnd) return false;
+  if (choice.report == nullptr || isLoading || place < choice.codeBegin || place >= choice.codeEnd) return false;
   std::array<char, 80> subject{};
   std::snprintf(subject.data(), subject.size(), "of %zu bytes at %#zx of the program", size,
                 static_cast<std::size_t>(place - choice.codeBegin));
@@ -168,6 +173,14 @@ int __libc_start_main(int (*main)(int, char**, char**), int count, char** argume
   programMain = main;
   return next<decltype(__libc_start_main)>("__libc_start_main")(runMain, count, arguments, init, fini, endOfLoader,
                                                                 stack);
+}
+
+void* dlopen(const char* file, int mode) {
+  static const auto libc = next<decltype(dlopen)>("dlopen");
+  const bool before = std::exchange(isLoading, true);
+  void* library = libc(file, mode);
+  isLoading = before;
+  return library;
 }
 
 ssize_t write(int file, const void* bytes, std::size_t size) {
