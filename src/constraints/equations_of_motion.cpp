@@ -11,8 +11,6 @@
 namespace cradle {
 namespace {
 
-// 1/s: an error of the velocity of a motor that holds decays so fast, which steps follow with ease.
-constexpr double kMotorRelaxation = 10;
 // Of the largest pivot: motors whose responses differ by less work on one motion.
 constexpr double kSameMotors = 1e-9;
 // Of the response of a joint's bodies alone: with less, stops or contacts leave the coordinate no motion, and its motor

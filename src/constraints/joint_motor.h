@@ -4,6 +4,9 @@
 
 namespace cradle {
 
+/// 1/s: an error of the velocity of a motor that holds decays so fast.
+constexpr double kMotorRelaxation = 10;
+
 /// A drive of the coordinate of a slider or a hinge: a constant force, or the force that gives the coordinate a
 /// velocity, up to a given one. Forces are in N along a slider's axis, in N m about a hinge's; of A against B.
 struct JointMotor {

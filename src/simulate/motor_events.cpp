@@ -31,6 +31,12 @@ bool MotorEvents::any() const {
   return std::any_of(motors.begin(), motors.end(), [](const JointMotor& motor) { return motor.hasTarget; });
 }
 
+bool MotorEvents::anyHolds() const {
+  const std::vector<JointMotor>& motors = island_.assembly.mechanism.motors;
+  return std::any_of(motors.begin(), motors.end(),
+                     [](const JointMotor& motor) { return motor.hasTarget && motor.mode == JointMotor::Mode::holds; });
+}
+
 bool MotorEvents::rests(std::size_t motor) const {
   const Constraint& joint = island_.assembly.mechanism.motors[motor].joint;
   return island_.resting.isResting(joint.anchorA.body) || island_.resting.isResting(joint.anchorB.body);

@@ -27,6 +27,9 @@ class MotorEvents {
   /// The first change within a step, whose end derivative must be there (prepareInterpolant).
   std::optional<MotorChange> firstChange(const Step& step);
 
+  /// Whether any motor that may change holds.
+  bool anyHolds() const;
+
   /// Of the step of the last call of firstChange: a step of which length would have the force of motors that hold known
   /// between its samples, as its fourth differences grow with the fourth power of that. Below 1, the step is too long:
   /// a body that motors hold has no error, however long a step is.

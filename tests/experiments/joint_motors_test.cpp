@@ -185,6 +185,27 @@ TEST(JointMotors, WorkAgainstASpringIsTheSprings) {
   }
 }
 
+/// Two bodies on a turned slider that a motor drives apart at v, on which nothing acts: no step of any length has an
+/// error, and what a step amplifies of rounding is rounding.
+TEST(JointMotors, HeldVelocityOfFreeBodiesIsExactInLongSteps) {
+  for (const double accuracy : {1e-3, 1e-6, 1e-9}) {
+    const double c = std::cos(1.0), s = std::sin(1.0);
+    const std::string body = R"("shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "collision": "none",
+        "orientation": {"axis": [0, 1, 0], "angleDegrees": 57.29577951308232})";
+    const Trajectory moved = runMotor(
+        9, accuracy,
+        fmt::format(R"({{"name": "a", "mass": 1, "linearVelocity": [{}, 0, {}], {}}},
+        {{"name": "b", "mass": 2, "position": [{}, 0, {}], {}}})",
+                    -0.5 * c, 0.5 * s, body, c, -s, body),
+        R"("gravity": [0, 0, 0], "sliders": [{"bodyA": "a", "bodyB": "b", "anchorA": [1, 0, 0], "anchorB": [0, 0, 0],
+        "axis": [1, 0, 0], "motor": {"targetVelocity": -0.5, "maxForce": 0.3}}])");
+    for (const Frame& frame : moved.frames) {
+      EXPECT_NEAR(frame.joints[0].coordinate, -0.5 * frame.time, 1e-12) << accuracy << " at " << frame.time;
+      EXPECT_NEAR(frame.energy.work, 0, 1e-13) << accuracy << " at " << frame.time;
+    }
+  }
+}
+
 /// A torque from rest by every method: w = T t / I, as no step has any energy before it.
 TEST(JointMotors, TorqueFromRestByEveryMethod) {
   for (const char* method : {"explicitEuler", "semiImplicitEuler", "rk4"}) {
