@@ -16,7 +16,7 @@ namespace {
 // islands of their own.
 constexpr double kApartWindows = 4, kApartMargin = 0.5;
 constexpr double kMeetingMargin = 0.05;  // of a radius: bodies that come nearer within a window are taken to meet
-constexpr std::ptrdiff_t kFastPart = 4;  // one of so many bodies goes farther than its radius in a window
+constexpr double kFastRatio = 0.25;      // of the bodies that move: they go farther than their radii in a window
 constexpr double kTouchMargin = 1e-6;    // of a radius: far more than tolerances of contact
 
 bool isMoving(const Scene& scene, int body) {
@@ -123,7 +123,7 @@ double IslandGroup::windowLength() const {
       times.push_back(timeToGo(all_.radii[i], speed, gravity));
   }
   if (times.empty()) return std::min(scene_.duration, timeToGo(smallestSize(all_.geometry), 0, gravity));
-  const auto found = times.begin() + std::ssize(times) / kFastPart;
+  const auto found = times.begin() + static_cast<std::ptrdiff_t>(kFastRatio * static_cast<double>(times.size()));
   std::nth_element(times.begin(), found, times.end());
   return std::min(*found, scene_.duration);
 }
@@ -357,7 +357,7 @@ bool IslandGroup::mergeThoseThatMet() {
   return true;
 }
 
-/// What all islands did in the window counts.
+/// The motion of all islands through the window counts.
 void IslandGroup::accept() {
   for (const Island& island : islands_)
     if (island.fault) std::rethrow_exception(island.fault);

@@ -20,10 +20,10 @@ namespace cradle {
 /// (Timewarp: B. Mirtich, SIGGRAPH 2000).
 ///
 /// Time goes on in windows. Each island moves through the window by itself, and notes what its bodies sweep. Where
-/// bodies of two islands may have met, both are taken back to the window's start, and go through it as one. What was
-/// done in the window counts from then on, when nothing of it can have met. At the start of a window islands merge that
-/// are about to meet. No step is cut by a window: only a new island begins at one. Islands do not part again: what
-/// happens on both sides of a mirror image, once in contact, stays at one instant.
+/// bodies of two islands may have met, both are taken back to the window's start, and go through it as one. The motion
+/// in the window counts from then on, when no bodies can have met in it. At the start of a window islands merge that
+/// are about to meet. No step is cut by a window: only a new island begins at one. Islands do not part again: events on
+/// both sides of a mirror image, once in contact, stay at one instant.
 class IslandGroup {
  public:
   /// Whether an island of the plan may be moved as several: its steps are as long as the error allows, some of its

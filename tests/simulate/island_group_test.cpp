@@ -81,7 +81,7 @@ TEST(IslandGroup, DividesWhatIsNotTied) {
   EXPECT_FALSE(mayDivide(boxes + R"(, "method": {"name": "rk4", "timeStep": 0.001})"));
 }
 
-// What is far away changes no bit: three boxes that fall, bounce and roll apart from each other move as each of them
+// Bodies far away change no bit: three boxes that fall, bounce and roll apart from each other move as each of them
 // alone.
 TEST(IslandGroup, BodiesApartMoveAsIfAlone) {
   const double heights[] = {0.5, 0.53, 0.61};
@@ -186,7 +186,7 @@ TEST(IslandGroup, MetIslandsMoveAsOne) {
   EXPECT_EQ(fewest, 1u);
 }
 
-// What took energy stays in the ledger when islands merge and part, and there is no energy from nowhere.
+// Energy that was taken stays in the ledger when islands merge and part, and there is no energy from nowhere.
 TEST(IslandGroup, KeepsItsLedger) {
   Grouped at(R"("bodies": [)" + groundText("rubber") + tumblingBox("a", 0, 0.4) + tumblingBox("b", 0.05, 1) +
                  tumblingBox("c", 3, 0.5) + "]",
