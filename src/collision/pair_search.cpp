@@ -295,13 +295,25 @@ void PairSearch::searchTouching(double start, const TouchingFeatures& touching, 
   bounds_.graze = std::max(bounds_.graze, touching.tolerance);  // faces that stay flush would be searched without end
   if (!(speed > band)) return searchFrom(0, start, lowest - band, best);
   const bool hasOnePoint = std::isfinite(bounds_.acceleration) && staysOnePoint();
-  if (hasOnePoint && speed >= 0.5 * maxAcceleration_) return;  // 2 v / a is beyond the step
-  const double from = std::min(speed / maxAcceleration_, hasOnePoint ? 1 : kFirstGap);
+  const double acceleration = closingAcceleration();
+  if (hasOnePoint && speed >= 0.5 * acceleration) return;  // 2 v / a is beyond the step
+  const double from = std::min(speed / acceleration, hasOnePoint ? 1 : kFirstGap);
   const double away = gap(from);
   if (away > lowest)
     searchFrom(from, away, lowest, best);
   else
     searchFrom(0, start, lowest - band, best);  // the gap opens by no more than rounding
+}
+
+/// Bound on the acceleration with which the gap comes back (m, with the step as the unit of time). The distance of a
+/// sphere's centre from a convex body is a convex function of its place in the frame of that body, and bends down no
+/// more than the centre is accelerated there: also by the turning of the frame, however far from the body's own points.
+double PairSearch::closingAcceleration() const {
+  if (pair_.againstPlane || face_ || !hasSphere()) return maxAcceleration_;
+  const Collider& b = geometry_.colliders[pair_.b];
+  if (a_.isSphere() && b.isSphere()) return maxAcceleration_;
+  return maxAcceleration_ + (a_.isSphere() ? accelerationInFrame(scratch_.turnOf(step_, bodyB_), a_)
+                                           : accelerationInFrame(scratch_.turnOf(step_, a_.body), b));
 }
 
 /// How far (m) a feature that touches without being held may sink in before that is an impact.

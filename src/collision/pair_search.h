@@ -43,6 +43,7 @@ class PairSearch {
   bool hasSheet() const;
   bool hasSphere() const;
   bool staysOnePoint() const;
+  double closingAcceleration() const;
   double deadBand(const TouchingFeatures& touching) const;
   double leavingSpeed(double tolerance);
   Vec3 lowestPoint(const Vec3& planeNormal) const;

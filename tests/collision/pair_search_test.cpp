@@ -60,6 +60,33 @@ struct SearchedPair {
 
 const Collider kBrick = colliderOf(Box{Vec3(0.4, 0.2, 0.6)}, {});
 
+// A ball that touches a turning face and leaves it with a speed u is caught by it again. With the face at h from the
+// axis, the ball's radius r and its place d beside the axis, the gap is
+//   g(t) = (h + r + (w d + u) t) cos(w t) - d sin(w t) - (h + r),
+// which bends down by w^2 (h + r): more than any point of the small brick is accelerated, by w^2 times its reach.
+TEST(PairSearch, FindsTheTurningFaceThatCatchesABall) {
+  const double radius = 1, height = 0.1 + radius, aside = 0.02;
+  for (const bool ballFirst : {false, true})
+    for (const double spin : {1.0, 2.0})
+      for (const double part : {0.3, 0.6, 0.9}) {  // of the step, about that of the catch
+        const double timeStep = 0.16 / spin;       // s: the ball is above the face until its end
+        const double leaving = part * timeStep / 2 * spin * spin * height;
+        const auto gap = [&](double t) {
+          return (height + (spin * aside + leaving) * t) * std::cos(spin * t) - aside * std::sin(spin * t) - height;
+        };
+        double before = 0.5 * part * timeStep, after = 2 * timeStep;
+        for (int i = 0; i < 60; ++i) (gap((before + after) / 2) > 0 ? before : after) = (before + after) / 2;
+        SearchedPair pair(ballFirst ? colliderOf(Sphere{radius}, {}) : kBrick,
+                          ballFirst ? kBrick : colliderOf(Sphere{radius}, {}));
+        pair.place(ballFirst ? 1 : 0, {Quat::Identity(), Vec3::Zero()}, Vec3::Zero(), spin * Vec3::UnitZ());
+        pair.place(ballFirst ? 0 : 1, {Quat::Identity(), Vec3(aside, height, 0)}, Vec3(0, spin * aside + leaving, 0));
+        pair.take(timeStep);
+        const auto found = pair.first({kTouching, 0.1 * kTouching});
+        ASSERT_TRUE(found) << spin << " " << part;
+        EXPECT_NEAR(found->fraction * timeStep, before, 1e-4) << spin << " " << part;  // one step of RK4
+      }
+}
+
 // Bricks, capsules, cylinders and spheres that fly by each other and spin: the oracle looks at the gap at 500 instants
 // of the step's interpolant. What is found lies between the last one without overlap and the first with one, and
 // nothing is found where there is none. (Touches shorter than a 500th are the search's alone: then the gap there is 0.)
