@@ -1,11 +1,12 @@
 #include "core/worker_threads.h"
 
 #include <algorithm>
+#include <system_error>
 
 namespace cradle {
 namespace {
 
-constexpr int kSpins = 2000;  // looks before the processor is offered to others: a few microseconds
+constexpr int kSpins = 2000;  // looks before a thread goes to sleep: some ten microseconds
 
 void pause() {
 #if defined(__x86_64__)
@@ -19,8 +20,14 @@ int hardwareThreads() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-WorkerThreads::WorkerThreads(int count) : count_(count) {
-  for (int thread = 1; thread < count; ++thread) threads_.emplace_back([this, thread] { work(thread); });
+void WorkerThreads::start() {
+  const int wanted = count_;
+  threads_.reserve(static_cast<std::size_t>(wanted));
+  try {
+    for (int thread = 1; thread < wanted; ++thread) threads_.emplace_back([this, thread] { work(thread); });
+  } catch (const std::system_error&) {  // the work is the same for fewer
+    count_ = 1 + static_cast<int>(threads_.size());
+  }
 }
 
 WorkerThreads::~WorkerThreads() {
@@ -33,6 +40,7 @@ WorkerThreads::~WorkerThreads() {
 }
 
 void WorkerThreads::run(const std::function<void(int)>& task) {
+  if (count_ > 1 && threads_.empty()) start();
   if (count_ == 1) return task(0);
   {
     const std::lock_guard lock(mutex_);
@@ -65,10 +73,11 @@ void WorkerThreads::meet() {
   if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == count_) {
     waiting_.store(0, std::memory_order_relaxed);
     meetings_.store(meeting + 1, std::memory_order_release);
+    meetings_.notify_all();
     return;
   }
-  for (int spins = 0; meetings_.load(std::memory_order_acquire) == meeting; ++spins)
-    spins < kSpins ? pause() : std::this_thread::yield();
+  for (int spins = 0; spins < kSpins && meetings_.load(std::memory_order_acquire) == meeting; ++spins) pause();
+  meetings_.wait(meeting, std::memory_order_acquire);
 }
 
 WorkerThreads::Part WorkerThreads::partOf(std::size_t size, int thread) const {

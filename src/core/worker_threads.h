@@ -10,15 +10,17 @@
 
 namespace cradle {
 
-/// Threads that do one task together and wait for each other inside it. The caller's is the first of them.
+/// Threads that do one task together and wait for each other inside it. The caller's is the first of them; the others
+/// begin with the first task.
 class WorkerThreads {
  public:
   /// `count` >= 1 threads, the caller's among them.
-  explicit WorkerThreads(int count);
+  explicit WorkerThreads(int count) : count_(count) {}
   ~WorkerThreads();
   WorkerThreads(const WorkerThreads&) = delete;
   WorkerThreads& operator=(const WorkerThreads&) = delete;
 
+  /// Fewer than asked after a task for which the system had no more.
   int count() const { return count_; }
 
   /// Calls task(thread) for thread = 0 .. count - 1, each on a thread of its own, and returns when all have returned.
@@ -47,9 +49,10 @@ class WorkerThreads {
   Part partOf(std::size_t size, int thread) const;
 
  private:
+  void start();
   void work(int thread);
 
-  const int count_;
+  int count_;
   std::vector<std::thread> threads_;
   std::mutex mutex_;
   std::condition_variable wake_;
