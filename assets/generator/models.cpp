@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "rocks.h"
 #include "t_handle.h"
 
 namespace cradle::assets {
@@ -246,6 +247,7 @@ std::vector<Model> allModels() {
           cradleFrame(),
           {"gear.3ds", {{"Brass", {196, 160, 82}}}, {gear()}},
           {"l_prism.3ds", {{"Teal", {42, 132, 138}}}, {lPrism()}},
+          {"rocks.3ds", {{"Basalt", {110, 108, 104}}}, rocks()},
           {"spinning_top.3ds", {{"Cherry", {168, 58, 42}}}, {spinningTop()}},
           {"t_handle.3ds", {{"Steel", {168, 176, 188}}}, {tHandle()}},
           {"torus.3ds", {{"Coral", {222, 98, 76}}}, {torus()}},
