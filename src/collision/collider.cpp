@@ -40,7 +40,7 @@ std::vector<Vec3> endsOf(double length, const RigidTransform& bodyFromShape) {
 Collider colliderOf(Polytope polytope) {
   Collider collider;
   collider.points = polytope.vertices;
-  collider.polytope = std::move(polytope);
+  collider.polytope = std::make_shared<const Polytope>(std::move(polytope));
   return enclosed(std::move(collider));
 }
 
@@ -110,7 +110,7 @@ Collider colliderOf(const Cylinder& cylinder, const RigidTransform& bodyFromShap
   Collider collider;
   collider.points = endsOf(cylinder.length, bodyFromShape);
   collider.rimRadius = cylinder.radius;
-  collider.polytope = inscribedPrism(cylinder, bodyFromShape);
+  collider.polytope = std::make_shared<const Polytope>(inscribedPrism(cylinder, bodyFromShape));
   return enclosed(std::move(collider));
 }
 
@@ -118,7 +118,7 @@ Collider colliderOf(const Capsule& capsule, const RigidTransform& bodyFromShape)
   Collider collider;
   collider.points = endsOf(capsule.length, bodyFromShape);
   collider.radius = capsule.radius;
-  collider.polytope = segmentBetween(collider.points[0], collider.points[1]);
+  collider.polytope = std::make_shared<const Polytope>(segmentBetween(collider.points[0], collider.points[1]));
   return enclosed(std::move(collider));
 }
 

@@ -26,14 +26,15 @@ enum class ColliderKind { sphere, capsule, cylinder, polytope, mesh };
 /// a point, that of a capsule a segment; boxes and hulls are polytopes, cylinders are all between two discs, and these
 /// and meshes have no spheres around them.
 struct Collider {
-  int body = kFixed;                 // moving body, or kFixed: then all is in the world
-  std::vector<Vec3> points;          // m, from the centre of mass in the body's frame: centre, ends, or vertices
-  double radius = 0;                 // m
-  double boundingRadius = 0;         // m, of the whole about the centre of mass
-  std::optional<Polytope> polytope;  // same frame; of a capsule its segment, of a cylinder a prism inside it
-  Bounds bounds = {};                // m, of the whole; same frame as the points
-  int surface = 0;                   // index into ContactGeometry::laws
-  double rimRadius = 0;              // m, > 0: of the discs around both points of a cylinder
+  int body = kFixed;          // moving body, or kFixed: then all is in the world
+  std::vector<Vec3> points;   // m, from the centre of mass in the body's frame: centre, ends, or vertices
+  double radius = 0;          // m
+  double boundingRadius = 0;  // m, of the whole about the centre of mass
+  // Same frame; of a capsule its segment, of a cylinder a prism inside it. Shared by all copies.
+  std::shared_ptr<const Polytope> polytope = {};
+  Bounds bounds = {};    // m, of the whole; same frame as the points
+  int surface = 0;       // index into ContactGeometry::laws
+  double rimRadius = 0;  // m, > 0: of the discs around both points of a cylinder
   std::shared_ptr<const MeshSurface> mesh =
       {};  // of a mesh, shared by all bodies of a model; of a polytope that meets meshes
   RigidTransform bodyFromMesh = {};

@@ -39,11 +39,11 @@ class TriangleSolid {
     polytope.neighbors = {1, 2, 0, 2, 1, 0};
     polytope.edgesAt = {0, 2, 0, 1, 1, 2};
     collider_.points = polytope.vertices;
-    collider_.polytope = std::move(polytope);
+    collider_.polytope = polytope_ = std::make_shared<Polytope>(std::move(polytope));
   }
 
   Core coreOf(const FlatTriangle& triangle) {
-    Polytope& polytope = *collider_.polytope;
+    Polytope& polytope = *polytope_;
     collider_.boundingRadius = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       polytope.vertices[i] = collider_.points[i] = cornerOf(triangle, i);
@@ -58,6 +58,7 @@ class TriangleSolid {
 
  private:
   Collider collider_;
+  std::shared_ptr<Polytope> polytope_;  // the collider's
 };
 
 Bounds boundsOf(const Core& cylinder) {

@@ -43,11 +43,11 @@ void ConstraintSolver::factorize(const VectorX& state) {
 
 void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames) {
   findBlocks(state, frames);
-  if (!hasKnownStructure()) analyze();
+  if (!factor_ || !hasKnownStructure()) analyze();
   assemble();
-  factor_.factorize();
-  isRegular_ = factor_.leastPivot() > kRegularPivot;
-  if (!isRegular_) factor_.factorize(kRegularisation);
+  factor_->factorize();
+  isRegular_ = factor_->leastPivot() > kRegularPivot;
+  if (!isRegular_) factor_->factorize(kRegularisation);
 }
 
 void ConstraintSolver::findBlocks(const VectorX& state, const std::vector<BodyFrame>& frames) {
@@ -110,7 +110,8 @@ void ConstraintSolver::analyze() {
       blocksOf[static_cast<std::size_t>(body)].push_back(index);
     }
   }
-  factor_.analyze(sizes, places);
+  if (!factor_) factor_ = std::make_unique<BlockLdlt>();
+  factor_->analyze(sizes, places);
   for (const auto& [first, second] : places) {
     const std::size_t row = static_cast<std::size_t>(first), column = static_cast<std::size_t>(second);
     couplings_.push_back({row, column, sharedBodies(blocks_[row], blocks_[column])});
@@ -123,7 +124,7 @@ void ConstraintSolver::assemble() {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const ConstraintBlock& block = blocks_[i];
     withRows(block.rows, [&](auto rows) {
-      double* const entries = factor_.diagonal(i);
+      double* const entries = factor_->diagonal(i);
       putDelassus<rows>(block, responses_[i], entries);
       if (block.compliance > 0)
         for (int row = 0; row < rows; ++row) entries[row * rows + row] += block.compliance;
@@ -134,7 +135,7 @@ void ConstraintSolver::assemble() {
     const BlockResponse& response = responses_[couplings_[i].column];
     withRows(row.rows, [&](auto rows) {
       withRows(column.rows, [&](auto columns) {
-        putDelassus<rows, columns>(row, column, couplings_[i].shared, response, factor_.beside(i), rows);
+        putDelassus<rows, columns>(row, column, couplings_[i].shared, response, factor_->beside(i), rows);
       });
     });
   }
@@ -145,24 +146,24 @@ void ConstraintSolver::ignoreEmptyRows() {
   Eigen::Index index = 0;
   for (std::size_t i = 0; i < blocks_.size(); ++i)
     for (int row = 0; row < blocks_[i].rows; ++row, ++index)
-      if (factor_.diagonal(i)[row * blocks_[i].rows + row] == 0) multipliers_[index] = 0;
+      if (factor_->diagonal(i)[row * blocks_[i].rows + row] == 0) multipliers_[index] = 0;
 }
 
 /// Overwrites the right-hand side in multipliers_ by the solution, refined iteratively if it has to be.
 void ConstraintSolver::solve() {
-  if (isRegular_) return factor_.solve(multipliers_);
+  if (isRegular_) return factor_->solve(multipliers_);
   ignoreEmptyRows();
   rightHandSide_ = multipliers_;
-  factor_.solve(multipliers_);
+  factor_->solve(multipliers_);
   const double wanted = rightHandSide_.lpNorm<Eigen::Infinity>();
   double last = wanted;
   for (int i = 0; i < kMaxRefinements; ++i) {
     residual_ = rightHandSide_;
-    factor_.subtractProduct(multipliers_, residual_);
+    factor_->subtractProduct(multipliers_, residual_);
     const double left = residual_.lpNorm<Eigen::Infinity>();
     if (!(left > kRefined * wanted) || left > kStalled * last) return;
     last = left;
-    factor_.solve(residual_);
+    factor_->solve(residual_);
     multipliers_ += residual_;
   }
 }
@@ -261,7 +262,7 @@ double ConstraintSolver::project(VectorX& state) {
     regularisation *= kMoreRegular;
     factorize(state);
     if (regularisation > kMaxRegularisation) break;
-    factor_.factorize(regularisation);
+    factor_->factorize(regularisation);
   }
   constrainVelocities(state);
   return found;
@@ -272,7 +273,7 @@ double ConstraintSolver::displace(VectorX& state) {
   forEachRow([this](const ConstraintBlock& block, std::size_t row, Eigen::Index index) {
     multipliers_[index] = -block.value[row];
   });
-  factor_.solve(multipliers_);
+  factor_->solve(multipliers_);
   double farthest = 0;
   addResponses([&](int body, const Vec3& shift, const Vec3& turn) {
     centerOfMass(state, body) += shift;
@@ -308,13 +309,13 @@ bool ConstraintSolver::leaveNoMotion(const VectorX& state, double error) {
 double ConstraintSolver::contradiction(const VectorX& state) {
   factorize(state);
   if (isRegular_) return 0;
-  factor_.factorize(kJammedRegularisation);
+  factor_->factorize(kJammedRegularisation);
   forEachRow([this](const ConstraintBlock& block, std::size_t row, Eigen::Index index) {
     multipliers_[index] = -block.velocityProduct[row];
   });
   residual_ = multipliers_;
-  factor_.solve(multipliers_);
-  factor_.subtractProduct(multipliers_, residual_);
+  factor_->solve(multipliers_);
+  factor_->subtractProduct(multipliers_, residual_);
   const double least = kContradictingRatio * residual_.lpNorm<Eigen::Infinity>();
   double left = 0, asked = 0;
   forEachRow([&](const ConstraintBlock& block, std::size_t row, Eigen::Index index) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -104,7 +105,7 @@ class ConstraintSolver {
   std::vector<BlockResponse> responses_;
   std::vector<std::array<int, 3>> structure_;  // bodies and rows of each, when the couplings were found
   std::vector<Coupling> couplings_;            // in the order of their places in factor_
-  BlockLdlt factor_;
+  std::unique_ptr<BlockLdlt> factor_;          // none before factorize
   bool isRegular_ = true;
   VectorX multipliers_, rightHandSide_, residual_, undisplaced_;
 };

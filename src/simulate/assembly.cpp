@@ -306,6 +306,56 @@ void warnOfSteps(const Scene& scene, const ChosenMethod& method, Assembly& assem
       fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
 }
 
+/// Visits those of a whole's pairs of colliders, ascending, that a part has, by the part's indices. `collidersOf` a
+/// pair are its two; `wholeOfPart`: the index in the whole of each collider of the part, ascending.
+template <class Pairs, class CollidersOf, class Visit>
+void forEachPairOfPart(const Pairs& pairs, const CollidersOf& collidersOf, const std::vector<std::size_t>& wholeOfPart,
+                       const Visit& visit) {
+  const auto partOf = [&](std::size_t whole) {
+    const auto found = std::lower_bound(wholeOfPart.begin(), wholeOfPart.end(), whole);
+    return found != wholeOfPart.end() && *found == whole ? std::optional(found - wholeOfPart.begin()) : std::nullopt;
+  };
+  for (std::size_t a = 0; a < wholeOfPart.size(); ++a) {
+    auto pair = std::lower_bound(pairs.begin(), pairs.end(), wholeOfPart[a], [&](const auto& other, std::size_t first) {
+      return collidersOf(other).first < first;
+    });
+    for (; pair != pairs.end() && collidersOf(*pair).first == wholeOfPart[a]; ++pair)
+      if (const auto b = partOf(collidersOf(*pair).second)) visit(a, static_cast<std::size_t>(*b));
+  }
+}
+
+/// Colliders of the bodies that may touch, from an island that has them all.
+void takeColliders(const Assembly& whole, const IslandPlan& part, Assembly& assembly) {
+  ContactGeometry& geometry = assembly.geometry;
+  assembly.radii.assign(assembly.mechanism.bodies.size(), 0.0);
+  std::vector<std::size_t> wholeOfPart;
+  for (const int index : part.touching) {
+    if (const int plane = indexAmong(whole.planeBodies, index); plane >= 0) {
+      geometry.planes.push_back(whole.geometry.planes[static_cast<std::size_t>(plane)]);
+      assembly.planeBodies.push_back(index);
+      continue;
+    }
+    wholeOfPart.push_back(static_cast<std::size_t>(indexAmong(whole.colliderBodies, index)));
+    Collider& collider = geometry.colliders.emplace_back(whole.geometry.colliders[wholeOfPart.back()]);
+    collider.body = indexAmong(assembly.sceneBodies, index);
+    collider.pins.clear();
+    assembly.colliderBodies.push_back(index);
+    if (collider.body != kFixed) assembly.radii[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
+  }
+  geometry.materials = whole.geometry.materials;
+  const auto same = [](const auto& pair) { return pair; };
+  forEachPairOfPart(whole.geometry.excluded, same, wholeOfPart,
+                    [&](std::size_t a, std::size_t b) { geometry.excluded.emplace_back(a, b); });
+  const auto collidersOf = [](const ColliderPair& pair) { return std::pair(pair.a, pair.b); };
+  forEachPairOfPart(whole.geometry.unsolvedPairs, collidersOf, wholeOfPart, [&](std::size_t a, std::size_t b) {
+    geometry.unsolvedPairs.push_back({a, b, false, {}});
+  });
+}
+
+void findPairsAtStart(Assembly& assembly) {
+  BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
+}
+
 }  // namespace
 
 Assembly assemble(const Scene& scene, const IslandPlan& island) {
@@ -319,16 +369,32 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
   excludeWelded(scene, assembly);
   excludeUnsolved(assembly.geometry);
   std::sort(assembly.geometry.excluded.begin(), assembly.geometry.excluded.end());
-  BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
+  assembly.smallestSize = smallestSize(assembly.geometry);
+  findPairsAtStart(assembly);
   constrainPinnedContacts(assembly);
   satisfyConstraints(scene, assembly);
   warnOfSteps(scene, island.method, assembly);
   return assembly;
 }
 
-void beginAt(double time, const VectorX& state, const std::vector<JointState>& joints, Assembly& assembly) {
+Assembly assemblePart(const Scene& scene, const IslandPlan& part, const Assembly& whole) {
+  Assembly assembly;
+  assembly.mechanism.gravity = scene.gravity;
+  assembly.pushes = part.pushes;
+  addBodies(scene, part, assembly);
+  addLinks(scene, part, assembly);
+  takeColliders(whole, part, assembly);
+  assembly.smallestSize = whole.smallestSize;
+  findPairsAtStart(assembly);
+  constrainPinnedContacts(assembly);
+  return assembly;
+}
+
+void beginAt(double time, const VectorX& state, const std::vector<JointState>& joints, std::vector<StartedPush> pushes,
+             Assembly& assembly) {
   assembly.startTime = time;
   assembly.state = state;
+  assembly.startedPushes = std::move(pushes);
   for (std::size_t i = 0; i < joints.size(); ++i) {
     AssembledJoint& joint = assembly.joints[i];
     joint.start = joints[i];

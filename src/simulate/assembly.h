@@ -28,6 +28,12 @@ struct AssembledJoint {
   JointState start;                // where the island begins to move; 0 at time 0
 };
 
+/// A push that acts already when an island begins to move.
+struct StartedPush {
+  std::size_t push = 0;       // index into the scene's
+  Vec3 point = Vec3::Zero();  // m: where, from the centre of mass in the body's frame
+};
+
 /// An island of a scene turned into what the methods work on.
 struct Assembly {
   Mechanism mechanism;
@@ -38,8 +44,11 @@ struct Assembly {
   VectorX state;                    // then
   std::vector<int> sceneBodies;     // scene body of each moving body, ascending
   std::vector<std::size_t> pushes;  // of the island, indices into the scene's
-  PartNames names;                  // taut ropes stand behind the constraints named here
-  std::vector<double> radii;        // m: of each moving body's collider about its centre of mass; 0 without one
+  std::vector<StartedPush> startedPushes;
+  bool isContinued = false;   // its bodies were of other islands before the start time, or up to it
+  PartNames names;            // taut ropes stand behind the constraints named here
+  double smallestSize = 1;    // m: of all that may ever come into the island, and of what is in it
+  std::vector<double> radii;  // m: of each moving body's collider about its centre of mass; 0 without one
   std::vector<int> colliderBodies, planeBodies;  // scene body of each collider and plane of the geometry
   std::vector<std::pair<int, int>> limitBodies;  // scene bodies A, B of each limit; kWorld
   std::vector<std::string> warnings;
@@ -56,8 +65,14 @@ std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair)
 /// projected, with a warning.
 Assembly assemble(const Scene& scene, const IslandPlan& island);
 
-/// Lets an island begin to move at `time` (s), in that state and with such coordinates of its joints.
-void beginAt(double time, const VectorX& state, const std::vector<JointState>& joints, Assembly& assembly);
+/// A part of an assembled island that moves by itself: of its bodies and links, with the colliders of the whole. It is
+/// where the scene has it: its state is beginAt's. O(bodies, links and fixed bodies of the part, log whole).
+Assembly assemblePart(const Scene& scene, const IslandPlan& part, const Assembly& whole);
+
+/// Lets an island begin to move at `time` (s), in that state, with such coordinates of its joints, and with these of
+/// its pushes under way.
+void beginAt(double time, const VectorX& state, const std::vector<JointState>& joints, std::vector<StartedPush> pushes,
+             Assembly& assembly);
 
 /// Throws Error(scene) that names everything in the scene that no method simulates yet, one a line.
 void refuseUnsupported(const Scene& scene);

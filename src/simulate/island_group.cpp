@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "core/error.h"
 #include "simulate/plan/near_spheres.h"
@@ -12,27 +13,15 @@
 namespace cradle {
 namespace {
 
-// Windows, and parts of a body's radius: bodies that come no nearer than that part over so many windows begin as
-// islands of their own.
+// Windows, and parts of a body's radius: bodies that come no nearer than that part over so many windows are islands of
+// their own.
 constexpr double kApartWindows = 4, kApartMargin = 0.5;
-constexpr double kMeetingMargin = 0.05;  // of a radius: bodies that come nearer within a window are taken to meet
-constexpr double kFastRatio = 0.25;      // of the bodies that move: they go farther than their radii in a window
-constexpr double kTouchMargin = 1e-6;    // of a radius: far more than tolerances of contact
-
-bool isMoving(const Scene& scene, int body) {
-  return body != kWorld && scene.bodies[static_cast<std::size_t>(body)].motion == Motion::dynamic;
-}
-
-/// Sets of moving scene bodies that links tie to each other.
-DisjointSets tiedBodies(const Scene& scene, const IslandPlan& plan) {
-  DisjointSets tied(scene.bodies.size());
-  for (const LinkIndex& link : plan.links) {
-    const auto [a, b] = anchorsOf(link, scene);
-    if (isMoving(scene, a.body) && isMoving(scene, b.body)) tied.join(a.body, b.body);
-  }
-  tied.flatten();
-  return tied;
-}
+constexpr double kMeetingMargin = 0.05;     // of a radius: bodies that come nearer within a window are taken to meet
+constexpr double kFastRatio = 0.25;         // of the bodies that move: they go farther than their radii in a window
+constexpr long kPartingEvaluations = 100;   // of equations in a window: some eight steps
+constexpr std::size_t kManyIslands = 1000;  // of more, 3 kB each of steps' stages are freed between windows
+constexpr long kMostFrames = 100;           // in a window, each of which is kept until it counts
+constexpr double kTouchMargin = 1e-6;       // of a radius: far more than tolerances of contact
 
 Reach sphereAround(const Bounds& box, double radius) {
   return {box.center(), box.diagonal().norm() / 2 + radius};
@@ -43,6 +32,16 @@ bool areNear(const Bounds& a, double radiusA, const Bounds& b, double radiusB) {
   return a.squaredExteriorDistance(b) <= reach * reach;
 }
 
+/// The earlier of two ends of promises, with the bodies of both.
+PromiseEnd bothOf(const PromiseEnd& a, const PromiseEnd& b) {
+  PromiseEnd both = a.time <= b.time ? a : b;
+  both.bodies = a.bodies;
+  both.bodies.insert(both.bodies.end(), b.bodies.begin(), b.bodies.end());
+  std::sort(both.bodies.begin(), both.bodies.end());
+  both.bodies.erase(std::unique(both.bodies.begin(), both.bodies.end()), both.bodies.end());
+  return both;
+}
+
 /// s: until a body that is free has gone its radius.
 double timeToGo(double radius, double speed, double gravity) {
   return 2 * radius / (speed + std::sqrt(speed * speed + 2 * gravity * radius));
@@ -51,51 +50,35 @@ double timeToGo(double radius, double speed, double gravity) {
 }  // namespace
 
 bool IslandGroup::mayDivide(const Scene& scene, const IslandPlan& plan) {
-  if (!plan.method.isAdaptive() || !plan.pushes.empty() || plan.touching.empty()) return false;
-  const DisjointSets tied = tiedBodies(scene, plan);
-  return std::any_of(plan.bodies.begin(), plan.bodies.end(),
-                     [&](int body) { return tied.islandOf(body) != tied.islandOf(plan.bodies.front()); });
+  if (!plan.method.isAdaptive() || plan.touching.empty()) return false;
+  return Clusters(scene, plan).count() > 1;
 }
 
-IslandGroup::IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly all)
-    : scene_(scene), plan_(plan), all_(std::move(all)), record_(all_, scene.accuracy) {
-  findClusters();
+IslandGroup::IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly all, WorkerThreads& threads)
+    : scene_(scene),
+      plan_(plan),
+      threads_(threads),
+      all_(std::move(all)),
+      record_(all_, scene.accuracy),
+      clusters_(scene, plan),
+      islandOfCluster_(clusters_.count()),
+      origins_(clusters_.count()),
+      twins_(clusters_.count()),
+      isToldResting_(scene.bodies.size(), 0) {
+  for (const int body : all_.sceneBodies) clusterOfBody_.push_back(clusters_.of(body));
   start_ = {0, all_.state, std::vector<JointState>(all_.joints.size())};
-  DisjointSets joined(clusters_.size());
+  DisjointSets joined(clusters_.count());
   visitNear(kApartWindows * windowLength(), kApartMargin, [&](int a, int b) { joined.join(a, b); });
   regroup(setsOf(std::move(joined)));
   addWindow(0, {});
 }
 
-void IslandGroup::findClusters() {
-  const DisjointSets tied = tiedBodies(scene_, plan_);
-  std::vector<int> clusterOf(scene_.bodies.size(), -1);
-  for (const int body : plan_.bodies) {
-    int& cluster = clusterOf[static_cast<std::size_t>(tied.islandOf(body))];
-    if (cluster < 0) {
-      cluster = static_cast<int>(clusters_.size());
-      clusters_.emplace_back();
-    }
-    clusters_[static_cast<std::size_t>(cluster)].push_back(body);
-    clusterOf[static_cast<std::size_t>(body)] = cluster;
-  }
-  for (const int body : all_.sceneBodies) clusterOfBody_.push_back(clusterOf[static_cast<std::size_t>(body)]);
-  linksOfCluster_.resize(clusters_.size());
-  for (std::size_t i = 0; i < plan_.links.size(); ++i) {
-    const auto [a, b] = anchorsOf(plan_.links[i], scene_);
-    const int body = isMoving(scene_, a.body) ? a.body : b.body;
-    linksOfCluster_[static_cast<std::size_t>(clusterOf[static_cast<std::size_t>(body)])].push_back(i);
-  }
-  for (const int body : plan_.touching)
-    if (scene_.bodies[static_cast<std::size_t>(body)].motion == Motion::fixed) fixed_.push_back(body);
-  islandOfCluster_.resize(clusters_.size());
-}
-
 const VectorX& IslandGroup::stateAt(double time, const std::function<void(double time)>& reached) {
   const double until = time - sameTime(time);
   while (frames_.back().time < until) {
+    if (fault_) std::rethrow_exception(fault_);
     const double length = windowLength();
-    mergeThoseThatComeNear(length);
+    regroupFor(length);
     addWindow(length, reached);
   }
   while (frames_.front().time < until) frames_.pop_front();
@@ -113,8 +96,9 @@ long IslandGroup::evaluations() const {
                          [](long sum, const Island& island) { return sum + island.solver->evaluations(); });
 }
 
-/// s: in it, most bodies that move go no farther than their radii.
+/// s: the time in which three of four bodies that move go no farther than their radii, but no more than kMostFrames.
 double IslandGroup::windowLength() const {
+  const double longest = std::min(scene_.duration, frameTime(scene_, kMostFrames));
   const double gravity = all_.mechanism.gravity.norm();
   std::vector<double> times;
   for (std::size_t i = 0; i < clusterOfBody_.size(); ++i) {
@@ -122,10 +106,10 @@ double IslandGroup::windowLength() const {
     if (clusterOfBody_[i] >= 0 && all_.radii[i] > 0 && speed > 0)
       times.push_back(timeToGo(all_.radii[i], speed, gravity));
   }
-  if (times.empty()) return std::min(scene_.duration, timeToGo(smallestSize(all_.geometry), 0, gravity));
+  if (times.empty()) return std::min(longest, timeToGo(all_.smallestSize, 0, gravity));
   const auto found = times.begin() + static_cast<std::ptrdiff_t>(kFastRatio * static_cast<double>(times.size()));
   std::nth_element(times.begin(), found, times.end());
-  return std::min(*found, scene_.duration);
+  return std::min(*found, longest);
 }
 
 /// Moves all islands on by a time (s), or to the end of the scene.
@@ -135,15 +119,31 @@ void IslandGroup::addWindow(double length, const std::function<void(double time)
   std::function<void(double)> tell;
   if (reached) tell = [&](double) { reached(start_.time); };
   do {
-    for (Island& island : islands_)
-      if (!island.hasMoved) move(island, end, tell);
-  } while (mergeThoseThatMet());
+    moveAll(end, tell);
+  } while (mergeThoseThatMet() || takeBackWhatEndsBeyond(end));
   accept();
 }
 
-/// Joins what is about to meet.
-void IslandGroup::mergeThoseThatComeNear(double window) {
-  DisjointSets joined = islandsNow();
+/// Moves the islands that have not moved through the window yet.
+void IslandGroup::moveAll(double end, const std::function<void(double time)>& reached) {
+  std::vector<Island*> left;
+  for (Island& island : islands_)
+    if (!island.hasMoved) left.push_back(&island);
+  const std::vector<double> times = timesUntil(end);
+  const auto moveSome = [&](int thread, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) move(*left[i], times, thread == 0 ? reached : nullptr);
+  };
+  if (evaluationsOfWindow_ < kSharedEvaluations)
+    moveSome(0, 0, left.size());
+  else
+    threads_.share(left.size(), 1, moveSome);
+  for (const Island* island : left)
+    if (island->failure) std::rethrow_exception(island->failure);
+}
+
+/// Joins what is about to meet, and parts what stays apart.
+void IslandGroup::regroupFor(double window) {
+  DisjointSets joined = mayPart() ? nearWithinIslands(kApartWindows * window) : islandsNow();
   visitNear(window, kMeetingMargin, [&](int a, int b) { joined.join(a, b); });
   const std::vector<std::vector<int>> sets = setsOf(std::move(joined));
   for (const std::vector<int>& set : sets)
@@ -153,9 +153,30 @@ void IslandGroup::mergeThoseThatComeNear(double window) {
   regroup(sets);
 }
 
+bool IslandGroup::mayPart() const {
+  return std::any_of(islands_.begin(), islands_.end(), isWorthParting);
+}
+
+/// To begin anew costs an island some steps.
+bool IslandGroup::isWorthParting(const Island& island) {
+  return island.clusters.size() > 1 && island.evaluationsOfWindow > kPartingEvaluations;
+}
+
+/// Clusters of one island that do not stay apart over a time (s), or are not to part, joined.
+DisjointSets IslandGroup::nearWithinIslands(double horizon) const {
+  DisjointSets joined = twins_;
+  visitNear(horizon, kApartMargin, [&](int a, int b) {
+    if (islandIndexOf(a) == islandIndexOf(b)) joined.join(a, b);
+  });
+  for (const Island& island : islands_)
+    if (!isWorthParting(island))
+      for (const int cluster : island.clusters) joined.join(island.clusters.front(), cluster);
+  return joined;
+}
+
 /// The clusters of each island, joined.
 DisjointSets IslandGroup::islandsNow() const {
-  DisjointSets joined(clusters_.size());
+  DisjointSets joined(clusters_.count());
   for (const Island& island : islands_)
     for (const int cluster : island.clusters) joined.join(island.clusters.front(), cluster);
   return joined;
@@ -164,8 +185,8 @@ DisjointSets IslandGroup::islandsNow() const {
 /// The sets of joined clusters, in the order of their first ones.
 std::vector<std::vector<int>> IslandGroup::setsOf(DisjointSets joined) const {
   joined.flatten();
-  std::vector<std::vector<int>> sets(clusters_.size());
-  for (int cluster = 0; cluster < std::ssize(clusters_); ++cluster)
+  std::vector<std::vector<int>> sets(clusters_.count());
+  for (int cluster = 0; cluster < static_cast<int>(clusters_.count()); ++cluster)
     sets[static_cast<std::size_t>(joined.islandOf(cluster))].push_back(cluster);
   std::erase_if(sets, [](const std::vector<int>& set) { return set.empty(); });
   return sets;
@@ -230,48 +251,59 @@ void IslandGroup::regroup(const std::vector<std::vector<int>>& sets) {
     evaluations_ += old.solver->evaluations();
   }
   for (std::size_t i = 0; i < islands_.size(); ++i)
-    for (const int cluster : islands_[i].clusters) islandOfCluster_[static_cast<std::size_t>(cluster)] = i;
+    for (const int cluster : islands_[i].clusters) {
+      islandOfCluster_[static_cast<std::size_t>(cluster)] = i;
+      origins_.join(islands_[i].clusters.front(), cluster);
+    }
+  origins_.flatten();
+  for (const Island& old : before)
+    if (old.solver)
+      hasParted_ = hasParted_ || std::any_of(old.clusters.begin(), old.clusters.end(), [&](int cluster) {
+                     return islandIndexOf(cluster) != islandIndexOf(old.clusters.front());
+                   });
 }
 
-/// The part of the plan that is about some clusters, with all that they may touch and that does not move by forces.
-IslandPlan IslandGroup::planOf(const std::vector<int>& clusters) const {
-  IslandPlan part;
-  std::vector<std::size_t> links;
-  part.touching = fixed_;
-  const auto add = [](const std::vector<int>& from, std::vector<int>& to) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  for (const int cluster : clusters) {
-    add(clusters_[static_cast<std::size_t>(cluster)], part.bodies);
-    const std::vector<std::size_t>& tied = linksOfCluster_[static_cast<std::size_t>(cluster)];
-    links.insert(links.end(), tied.begin(), tied.end());
+/// The islands that had these clusters before; none at the scene's start.
+std::vector<const IslandGroup::Island*> IslandGroup::formerOf(const std::vector<int>& clusters,
+                                                              const std::vector<Island>& before) const {
+  std::vector<const Island*> former;
+  if (before.empty()) return former;
+  for (const int cluster : clusters) former.push_back(&before[islandIndexOf(cluster)]);
+  std::sort(former.begin(), former.end());
+  former.erase(std::unique(former.begin(), former.end()), former.end());
+  return former;
+}
+
+/// Pushes under way at the window's start on the bodies of some clusters.
+std::vector<StartedPush> IslandGroup::startedPushes(const std::vector<int>& clusters,
+                                                    const std::vector<const Island*>& former) const {
+  std::vector<StartedPush> all;
+  for (const Island* old : former)
+    for (const StartedPush& started : old->solver->pushesAt(start_.time))
+      if (std::binary_search(clusters.begin(), clusters.end(), clusters_.of(scene_.pushes[started.push].body)))
+        all.push_back(started);
+  return all;
+}
+
+/// The history of clusters in their former islands. A part inherits the end of a promise if it has one of the bodies
+/// named there.
+IslandHistory IslandGroup::historyOf(const std::vector<int>& clusters, const std::vector<const Island*>& former) const {
+  const auto isAmong = [&](int cluster) { return std::binary_search(clusters.begin(), clusters.end(), cluster); };
+  const auto isElsewhere = [&](int sceneBody) { return !isAmong(clusters_.of(sceneBody)); };
+  IslandHistory history;
+  for (const Island* old : former) {
+    const auto& end = old->historyAtStart.promiseEnd;
+    if (!end || std::all_of(end->bodies.begin(), end->bodies.end(), isElsewhere)) continue;
+    history.promiseEnd = history.promiseEnd ? bothOf(*history.promiseEnd, *end) : *end;
+    history.isInContactSteps = history.isInContactSteps || old->historyAtStart.isInContactSteps;
   }
-  const auto mayTouch = [this](int body) {
-    return std::binary_search(plan_.touching.begin(), plan_.touching.end(), body);
-  };
-  std::copy_if(part.bodies.begin(), part.bodies.end(), std::back_inserter(part.touching), mayTouch);
-  std::sort(links.begin(), links.end());
-  std::vector<char> isTied(scene_.bodies.size(), 0);
-  for (const std::size_t link : links) {
-    part.links.push_back(plan_.links[link]);
-    const auto [a, b] = anchorsOf(plan_.links[link], scene_);
-    for (const int body : {a.body, b.body})
-      if (body != kWorld) isTied[static_cast<std::size_t>(body)] = 1;
-  }
-  for (const int body : plan_.driven)
-    if (mayTouch(body) || isTied[static_cast<std::size_t>(body)]) part.driven.push_back(body);
-  std::copy_if(part.driven.begin(), part.driven.end(), std::back_inserter(part.touching), mayTouch);
-  std::sort(part.bodies.begin(), part.bodies.end());
-  std::sort(part.touching.begin(), part.touching.end());
-  part.nonRotating = plan_.nonRotating;
-  part.method = plan_.method;
-  return part;
+  return history;
 }
 
 IslandGroup::Island IslandGroup::makeIsland(const std::vector<int>& clusters, const std::vector<Island>& before) {
   Island island;
   island.clusters = clusters;
-  Assembly assembly = assemble(scene_, planOf(clusters));
+  Assembly assembly = assemblePart(scene_, clusters_.partOf(clusters), all_);
   VectorX state = assembly.state;
   for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {
     const int from = indexAmong(all_.sceneBodies, assembly.sceneBodies[i]);
@@ -283,45 +315,50 @@ IslandGroup::Island IslandGroup::makeIsland(const std::vector<int>& clusters, co
   }
   std::vector<JointState> joints;
   for (const AssembledJoint& joint : assembly.joints) {
-    const auto found = std::find_if(all_.joints.begin(), all_.joints.end(),
-                                    [&](const AssembledJoint& other) { return other.index == joint.index; });
+    const auto found =
+        std::lower_bound(all_.joints.begin(), all_.joints.end(), joint.index,
+                         [](const AssembledJoint& other, std::size_t index) { return other.index < index; });
+    CRADLE_CHECK(found != all_.joints.end() && found->index == joint.index);
     island.joints.push_back(static_cast<std::size_t>(found - all_.joints.begin()));
     joints.push_back(start_.joints[island.joints.back()]);
   }
-  beginAt(start_.time, state, joints, assembly);
+  const std::vector<const Island*> former = formerOf(clusters, before);
+  beginAt(start_.time, state, joints, startedPushes(clusters, former), assembly);
+  assembly.isContinued = !frames_.empty();
 
-  std::optional<PromiseEnd> end;
-  for (const Island& old : before) {
-    if (std::none_of(old.clusters.begin(), old.clusters.end(),
-                     [&](int cluster) { return std::binary_search(clusters.begin(), clusters.end(), cluster); }))
-      continue;
-    if (const auto& given = old.promiseEndAtStart; given && !end) end = given;
-  }
-  island.promiseEndAtStart = end;
-  island.solver = std::make_unique<IslandSolver>(scene_, std::move(assembly), plan_.method, end);
+  island.historyAtStart = historyOf(clusters, former);
+  island.solver = std::make_unique<IslandSolver>(scene_, std::move(assembly), plan_.method, island.historyAtStart);
   island.solver->stateAt(start_.time);
-  if (start_.time > 0) island.solver->takeEvents();  // they have been told, of the islands before
+  if (!frames_.empty()) takeFirstEvents(island);
   return island;
 }
 
-/// Through the window that begins now. A fault may be one of a step that other bodies would have ended.
-void IslandGroup::move(Island& island, double end, const std::function<void(double time)>& reached) const {
+/// s: of the frames of a window, and its end.
+std::vector<double> IslandGroup::timesUntil(double end) const {
+  std::vector<double> times;
+  for (long frame = nextFrame_; frame <= lastFrame(scene_) && frameTime(scene_, frame) <= end + sameTime(end); ++frame)
+    times.push_back(frameTime(scene_, frame));
+  times.push_back(end);
+  return times;
+}
+
+/// Through the window that begins now, whose `times` these are. A fault may be one of a step that other bodies would
+/// have ended.
+void IslandGroup::move(Island& island, const std::vector<double>& times,
+                       const std::function<void(double time)>& reached) const {
   island.hasMoved = true;
-  const auto add = [&](double time) {
-    const VectorX& state = island.solver->stateAt(time, reached);
-    island.snapshots.push_back({time, state, island.solver->jointStates()});
-  };
   try {
-    island.solver->beginSweep(end);
-    for (long frame = nextFrame_; frame <= lastFrame(scene_); ++frame) {
-      const double time = frameTime(scene_, frame);
-      if (time > end + sameTime(end)) break;
-      add(time);
+    island.solver->beginSweep(times.back());
+    island.snapshots.reserve(times.size());
+    for (const double time : times) {
+      const VectorX& state = island.solver->stateAt(time, reached);
+      island.snapshots.push_back({time, state, island.solver->jointStates()});
     }
-    add(end);
+    if (islands_.size() > kManyIslands) island.solver->releaseScratch();
   } catch (const Error& error) {
-    if (error.kind() == ErrorKind::interrupted) throw;
-    island.fault = std::current_exception();
+    (error.kind() == ErrorKind::interrupted ? island.failure : island.fault) = std::current_exception();
+  } catch (...) {
+    island.failure = std::current_exception();
   }
   const std::vector<Event> events = island.solver->takeEvents();
   island.events.insert(island.events.end(), events.begin(), events.end());
@@ -330,6 +367,8 @@ void IslandGroup::move(Island& island, double end, const std::function<void(doub
 /// True if bodies of different islands may have met in the window: these islands are one now, at its start.
 bool IslandGroup::mergeThoseThatMet() {
   if (islands_.size() == 1) return false;
+  DisjointSets joined = islandsNow();
+  bool isAny = joinTwins(joined);
   std::vector<Reach> spheres;
   std::vector<const Bounds*> boxes;
   std::vector<double> radii;
@@ -343,8 +382,6 @@ bool IslandGroup::mergeThoseThatMet() {
       clusters.push_back(clusterOfBody_[body]);
       spheres.push_back(sphereAround(*boxes.back(), radii.back()));
     }
-  DisjointSets joined = islandsNow();
-  bool isAny = false;
   forEachNearPair(spheres, [&](std::size_t a, std::size_t b) {
     const auto islandOf = [&](std::size_t i) { return islandOfCluster_[static_cast<std::size_t>(clusters[i])]; };
     if (islandOf(a) == islandOf(b) || !areNear(*boxes[a], radii[a], *boxes[b], radii[b])) return true;
@@ -357,40 +394,169 @@ bool IslandGroup::mergeThoseThatMet() {
   return true;
 }
 
+/// Joins islands of one origin with events whose times differ by rounding alone, and keeps these bodies joined: the two
+/// sides of a mirror image would drift apart tenfold at each impact, until they meet one after the other what they
+/// should meet at once. Times of equal bits show no difference yet. True if there are any.
+bool IslandGroup::joinTwins(DisjointSets& joined) {
+  if (!hasParted_) return false;
+  struct Instant {
+    int origin;
+    double time;
+    int cluster;
+  };
+  std::vector<Instant> instants;
+  for (const Island& island : islands_)
+    for (const Event& event : island.events)
+      if (const int cluster = clusterOf(event); cluster >= 0)
+        instants.push_back({origins_.islandOf(cluster), event.time, cluster});
+  std::sort(instants.begin(), instants.end(), [](const Instant& a, const Instant& b) {
+    return std::tie(a.origin, a.time, a.cluster) < std::tie(b.origin, b.time, b.cluster);
+  });
+  bool isAny = false;
+  for (std::size_t i = 1; i < instants.size(); ++i) {
+    const Instant& b = instants[i];
+    const auto isNear = [&](const Instant& a) { return a.origin == b.origin && b.time <= a.time + sameTime(a.time); };
+    for (std::size_t k = i; k-- > 0 && isNear(instants[k]);) {
+      const Instant& a = instants[k];
+      if (a.time == b.time || islandIndexOf(a.cluster) == islandIndexOf(b.cluster)) continue;
+      joined.join(a.cluster, b.cluster), twins_.join(a.cluster, b.cluster);
+      isAny = true;
+    }
+  }
+  return isAny;
+}
+
+/// The cluster of an event's first body that has one; -1: all its bodies are driven or fixed.
+int IslandGroup::clusterOf(const Event& event) const {
+  const int a = clusters_.of(event.bodyA);
+  return a >= 0 ? a : clusters_.of(event.bodyB);
+}
+
+/// Takes islands back to the window's start whose steps, which may go beyond its end (s), have come to a fault or to
+/// the end of a promise: they go through it with a step that ends there, for other bodies may come before what they
+/// met. True if there are any.
+bool IslandGroup::takeBackWhatEndsBeyond(double end) {
+  if (islands_.size() == 1) return false;
+  bool isAny = false;
+  for (Island& island : islands_) {
+    if (island.stops || !endsBeyond(island, end)) continue;
+    Island again = makeIsland(island.clusters, islands_);
+    again.stops = true;
+    again.solver->stopAt(end);
+    settled_ += island.startLedger;
+    evaluations_ += island.solver->evaluations();
+    island = std::move(again);
+    isAny = true;
+  }
+  return isAny;
+}
+
+bool IslandGroup::endsBeyond(const Island& island, double end) {
+  if (island.fault) return true;  // perhaps
+  const auto& promiseEnd = island.solver->promiseEnd();
+  return !island.historyAtStart.promiseEnd && promiseEnd && promiseEnd->time > end + sameTime(end);
+}
+
 /// The motion of all islands through the window counts.
 void IslandGroup::accept() {
-  for (const Island& island : islands_)
-    if (island.fault) std::rethrow_exception(island.fault);
-  const std::size_t count = islands_.front().snapshots.size();
-  for (std::size_t i = 0; i + 1 < count; ++i, ++nextFrame_) frames_.push_back(gather(i));
-  start_ = gather(count - 1);
+  noteFault();
+  std::vector<Snapshot> all = gather();
+  if (fault_) {  // the frames that all islands have come to count
+    if (frames_.empty() && all.empty()) std::rethrow_exception(fault_);
+    std::move(all.begin(), all.end(), std::back_inserter(frames_));
+    return takeReportsUntil(frames_.back().time);
+  }
+  start_ = std::move(all.back());
+  all.pop_back();
+  nextFrame_ += std::ssize(all);
+  std::move(all.begin(), all.end(), std::back_inserter(frames_));
+  evaluationsOfWindow_ = evaluations() - std::exchange(evaluationsBefore_, evaluations());
   record_.measure(start_.state);
-  const double until = start_.time + sameTime(start_.time);
+  takeReportsUntil(start_.time);
   for (Island& island : islands_) {
-    island.startLedger = island.snapshots.back().state.tail<kLedgerSize>();
-    island.snapshots.clear();
+    island.evaluationsOfWindow = island.solver->evaluations() - island.evaluationsBefore;
+    island.evaluationsBefore = island.solver->evaluations();
     island.hasMoved = false;
-    const auto later = std::stable_partition(island.events.begin(), island.events.end(),
-                                             [&](const Event& event) { return event.time <= until; });
-    events_.insert(events_.end(), island.events.begin(), later);
-    island.events.erase(island.events.begin(), later);
-    for (std::string& warning : island.solver->takeWarnings()) warnings_.push_back(std::move(warning));
-    corrections_.take(island.solver->corrections());
-    island.promiseEndAtStart = island.solver->promiseEnd();
-    if (const auto& end = island.promiseEndAtStart; end && (!promiseEnd_ || end->time < promiseEnd_->time))
-      promiseEnd_ = end;
+    if (std::exchange(island.stops, false)) island.solver->stopAt(scene_.duration);
+    island.historyAtStart = island.solver->history();
   }
 }
 
-/// All bodies at one of the islands' snapshots.
-IslandGroup::Snapshot IslandGroup::gather(std::size_t number) const {
-  Snapshot all{islands_.front().snapshots[number].time, start_.state, start_.joints};
-  all.state.tail<kLedgerSize>() = settled_;
+/// Takes events, warnings, corrections and ends of promises of all islands up to a time (s).
+void IslandGroup::takeReportsUntil(double time) {
+  takeEventsUntil(time);
+  for (Island& island : islands_) {
+    for (std::string& warning : island.solver->takeWarnings()) warnings_.push_back(std::move(warning));
+    corrections_.take(island.solver->corrections());
+    const auto& end = island.solver->promiseEnd();
+    if (end && end->time <= time + sameTime(time) && (!promiseEnd_ || end->time < promiseEnd_->time)) promiseEnd_ = end;
+  }
+}
+
+/// The fault of the island whose clock is behind those of the others that have one.
+void IslandGroup::noteFault() {
+  double first = INFINITY;
   for (const Island& island : islands_) {
-    const Snapshot& part = island.snapshots[number];
-    place(island, part.state, all.state);
-    all.state.tail<kLedgerSize>() += part.state.tail<kLedgerSize>();
-    for (std::size_t i = 0; i < island.joints.size(); ++i) all.joints[island.joints[i]] = part.joints[i];
+    if (!island.fault || island.solver->clock() >= first) continue;
+    first = island.solver->clock();
+    fault_ = island.fault;
+  }
+}
+
+/// Tells the events of all islands up to a time (s). A driven body rests and wakes in each island that has it; its
+/// first event counts.
+void IslandGroup::takeEventsUntil(double time) {
+  const double until = time + sameTime(time);
+  std::vector<Event> all;
+  for (Island& island : islands_) {
+    const auto later = std::stable_partition(island.events.begin(), island.events.end(),
+                                             [&](const Event& event) { return event.time <= until; });
+    all.insert(all.end(), island.events.begin(), later);
+    island.events.erase(island.events.begin(), later);
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
+  for (const Event& event : all) {
+    if (event.kind == EventKind::rest || event.kind == EventKind::wake) {
+      char& isResting = isToldResting_[static_cast<std::size_t>(event.bodyA)];
+      if ((isResting != 0) == (event.kind == EventKind::rest)) continue;
+      isResting = event.kind == EventKind::rest;
+    }
+    events_.push_back(event);
+  }
+}
+
+/// Events at an island's first instant were told by the islands before, except those of bodies that begin or cease to
+/// rest.
+void IslandGroup::takeFirstEvents(Island& island) const {
+  const auto isTold = [&](int body) { return isToldResting_[static_cast<std::size_t>(body)] != 0; };
+  for (const Event& event : island.solver->takeEvents())
+    if (event.kind == EventKind::rest && !isTold(event.bodyA)) island.events.push_back(event);
+  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+    const std::size_t body = static_cast<std::size_t>(island.bodies[i]);
+    if (const int sceneBody = all_.sceneBodies[body]; isTold(sceneBody) && !island.solver->isResting(i))
+      island.events.push_back({start_.time, EventKind::wake, sceneBody, -1,
+                               centerOfMass(start_.state, static_cast<Eigen::Index>(body)), Vec3::Zero(), 0});
+  }
+}
+
+/// All bodies at the islands' snapshots, which are taken away; if an island has come to a fault, at those that all
+/// have.
+std::vector<IslandGroup::Snapshot> IslandGroup::gather() {
+  std::size_t count = islands_.front().snapshots.size();
+  for (const Island& island : islands_) count = std::min(count, island.snapshots.size());
+  std::vector<Snapshot> all(count, start_);
+  for (Snapshot& whole : all) whole.state.tail<kLedgerSize>() = settled_;
+  for (Island& island : islands_) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Snapshot& part = island.snapshots[i];
+      all[i].time = part.time;
+      place(island, part.state, all[i].state);
+      all[i].state.tail<kLedgerSize>() += part.state.tail<kLedgerSize>();
+      for (std::size_t joint = 0; joint < island.joints.size(); ++joint)
+        all[i].joints[island.joints[joint]] = part.joints[joint];
+    }
+    if (!island.snapshots.empty()) island.startLedger = island.snapshots.back().state.tail<kLedgerSize>();
+    island.snapshots = {};
   }
   return all;
 }

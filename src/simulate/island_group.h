@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "constraints/disjoint_sets.h"
+#include "core/worker_threads.h"
+#include "simulate/clusters.h"
 #include "simulate/conservation_record.h"
 #include "simulate/island_solver.h"
 
@@ -22,16 +24,18 @@ namespace cradle {
 /// Time goes on in windows. Each island moves through the window by itself, and notes what its bodies sweep. Where
 /// bodies of two islands may have met, both are taken back to the window's start, and go through it as one. The motion
 /// in the window counts from then on, when no bodies can have met in it. At the start of a window islands merge that
-/// are about to meet. No step is cut by a window: only a new island begins at one. Islands do not part again: events on
-/// both sides of a mirror image, once in contact, stay at one instant.
+/// are about to meet, and part where their bodies stay apart. No step is cut by a window: only a new island begins at
+/// one, and one whose step has come to its end beyond it goes there again. Parts whose events are at one instant but
+/// for rounding, as those of a mirror image, are one island for good.
 class IslandGroup {
  public:
-  /// Whether an island of the plan may be moved as several: its steps are as long as the error allows, some of its
-  /// bodies are not tied to each other, and no push acts on any.
+  /// Whether an island of the plan may be moved as several: its steps are as long as the error allows, and some
+  /// of its bodies are not tied to each other.
   static bool mayDivide(const Scene& scene, const IslandPlan& plan);
 
-  /// Keeps references to `scene` and `plan`. `all` is that island at time 0.
-  IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly all);
+  /// Keeps references to all but `all`, which is that island at time 0. The islands share the threads; the motion is
+  /// the same for any number of them.
+  IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly all, WorkerThreads& threads);
 
   /// As IslandSolver::stateAt, for the time of a frame, in the order of the frames.
   const VectorX& stateAt(double time, const std::function<void(double time)>& reached = {});
@@ -66,50 +70,74 @@ class IslandGroup {
     std::vector<std::size_t> joints;  // indices into all joints
     std::vector<Snapshot> snapshots;  // at the frames in the window, then at its end
     std::vector<Event> events;        // since the window's start
-    std::optional<PromiseEnd> promiseEndAtStart;
-    Ledger startLedger = Ledger::Zero();
-    std::exception_ptr fault;
-    bool hasMoved = false;  // through the window
+    IslandHistory historyAtStart;
+    Ledger startLedger = Ledger::Zero();                  // J, at the window's start
+    long evaluationsBefore = 0, evaluationsOfWindow = 0;  // by the last window's start, and in it
+    std::exception_ptr fault;                             // of a step that other bodies may have ended
+    std::exception_ptr failure;                           // of the run: interrupted, or out of memory
+    bool hasMoved = false;                                // through the window
+    bool stops = false;                                   // at its end: no step goes beyond
   };
 
-  void findClusters();
   void addWindow(double length, const std::function<void(double time)>& reached);
   double windowLength() const;
-  void mergeThoseThatComeNear(double window);
+  void regroupFor(double window);
+  bool mayPart() const;
+  static bool isWorthParting(const Island& island);
+  DisjointSets nearWithinIslands(double horizon) const;
   DisjointSets islandsNow() const;
-  Island& islandAt(int cluster) { return islands_[islandOfCluster_[static_cast<std::size_t>(cluster)]]; }
+  std::size_t islandIndexOf(int cluster) const { return islandOfCluster_[static_cast<std::size_t>(cluster)]; }
+  Island& islandAt(int cluster) { return islands_[islandIndexOf(cluster)]; }
   void visitNear(double horizon, double margin, const std::function<void(int clusterA, int clusterB)>& visit) const;
   std::vector<std::vector<int>> setsOf(DisjointSets joined) const;
   std::optional<std::size_t> islandOf(const std::vector<int>& set) const;
   void stepToStart(Island& island);
   static void place(const Island& island, const VectorX& part, VectorX& all);
   void regroup(const std::vector<std::vector<int>>& sets);
+  std::vector<const Island*> formerOf(const std::vector<int>& clusters, const std::vector<Island>& before) const;
+  std::vector<StartedPush> startedPushes(const std::vector<int>& clusters,
+                                         const std::vector<const Island*>& former) const;
+  IslandHistory historyOf(const std::vector<int>& clusters, const std::vector<const Island*>& former) const;
   Island makeIsland(const std::vector<int>& clusters, const std::vector<Island>& before);
-  IslandPlan planOf(const std::vector<int>& clusters) const;
-  void move(Island& island, double end, const std::function<void(double time)>& reached) const;
+  void moveAll(double end, const std::function<void(double time)>& reached);
+  std::vector<double> timesUntil(double end) const;
+  void move(Island& island, const std::vector<double>& times, const std::function<void(double time)>& reached) const;
   bool mergeThoseThatMet();
+  bool takeBackWhatEndsBeyond(double end);
+  static bool endsBeyond(const Island& island, double end);
+  bool joinTwins(DisjointSets& joined);
+  int clusterOf(const Event& event) const;
   void accept();
-  Snapshot gather(std::size_t number) const;
+  void noteFault();
+  void takeReportsUntil(double time);
+  void takeEventsUntil(double time);
+  void takeFirstEvents(Island& island) const;
+  std::vector<Snapshot> gather();
 
   const Scene& scene_;
   const IslandPlan& plan_;
+  WorkerThreads& threads_;
   Assembly all_;
   ConservationRecord record_;
-  std::vector<std::vector<int>> clusters_;                // scene bodies that are tied to each other, ascending
-  std::vector<int> clusterOfBody_;                        // by moving body; -1: driven
-  std::vector<std::vector<std::size_t>> linksOfCluster_;  // indices into the plan's
-  std::vector<int> fixed_;                                // scene bodies that may be touched, ascending
+  const Clusters clusters_;
+  std::vector<int> clusterOfBody_;  // by moving body; -1: driven
   std::vector<std::size_t> islandOfCluster_;
+  DisjointSets origins_;  // clusters that islands have connected, at one time or one after the other
+  DisjointSets twins_;    // of these, some that are not to part
+  bool hasParted_ = false;
   std::vector<Island> islands_;      // in the order of their first clusters
   Snapshot start_;                   // of the window under way
   Ledger settled_ = Ledger::Zero();  // J: ledgers of islands that are no more
   std::deque<Snapshot> frames_;      // that were not asked for yet; the first is the last one that was
   long nextFrame_ = 0;
+  std::exception_ptr fault_;  // after those frames
   std::vector<Event> events_;
+  std::vector<char> isToldResting_;  // by scene body: by the events so far
   std::vector<std::string> warnings_;
   Corrections corrections_;
   std::optional<PromiseEnd> promiseEnd_;
-  long evaluations_ = 0;  // of islands that are no more
+  long evaluations_ = 0;                                  // of islands that are no more
+  long evaluationsBefore_ = 0, evaluationsOfWindow_ = 0;  // by the last window's start, and in it
 };
 
 }  // namespace cradle

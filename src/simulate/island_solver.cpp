@@ -39,23 +39,25 @@ std::string textOf(const PromiseEnd& end, const Scene& scene) {
 
 }  // namespace
 
-IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method,
-                           std::optional<PromiseEnd> promiseEnd)
+IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method)
+    : IslandSolver(scene, std::move(assembly), method, {}) {
+  record_.emplace(island_.assembly, scene.accuracy);
+}
+
+IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method, IslandHistory history)
     : island_(scene, std::move(assembly)),
       ropes_(island_),
       coordinates_(island_.assembly),
       solver_(island_.assembly.mechanism.constraints, island_.assembly.mechanism.bodies),
-      frameEquations_(island_.assembly.mechanism),
       method_(method),
-      record_(island_.assembly, scene.accuracy),
-      promiseEnd_(std::move(promiseEnd)),
+      promiseEnd_(std::move(history.promiseEnd)),
       jointStates_(island_.assembly.joints.size()) {
-  if (promiseEnd_)
+  if (history.isInContactSteps)
     changeToSteps();
   else if (method.isAdaptive())
-    motion_.emplace<EventMotion>(island_, ropes_, method, false);
+    moveByEvents(promiseEnd_.has_value());
   else
-    motion_.emplace<SteppedMotion>(island_, ropes_, method);
+    moveBySteps(method);
   changeMotion();
 }
 
@@ -66,11 +68,11 @@ const VectorX& IslandSolver::stateAt(double time, const std::function<void(doubl
     throwIfInterrupted();
     advance(time);
     if (isSwept_) swept_.add(island_.step, island_.state);
-    if (method_.isAdaptive()) record_.measure(island_.state);
+    if (record_ && method_.isAdaptive()) record_->measure(island_.state);
     if (reached) reached(island_.time);
   }
   report(time, false);
-  record_.add(time, reported_);
+  if (record_) record_->add(time, reported_);
   reportedTime_ = time;
   if (!jointStates_.empty()) findJointStates(time);
   return reported_;
@@ -100,8 +102,8 @@ void IslandSolver::beginSweep(double to) {
 }
 
 void IslandSolver::finish() {
-  if (promiseEnd_ || !method_.isAdaptive()) return;
-  const std::optional<ConservationRecord::Loss> loss = record_.firstLoss();
+  if (!record_ || promiseEnd_ || !method_.isAdaptive()) return;
+  const std::optional<ConservationRecord::Loss> loss = record_->firstLoss();
   if (!loss) return;
   promiseEnd_ = endOf(*loss, island_.assembly.sceneBodies, island_.scene);
 }
@@ -118,11 +120,11 @@ void IslandSolver::advance(double time) {
   if (mayNotGoOn()) changeMotion();
   const double before = island_.time;
   coordinates_.beginStep(island_.state);
-  if (auto* events = std::get_if<EventMotion>(&motion_)) {
-    advance(time, *events);
-    if (!promiseEnd_ && events->offConstraintsFrom()) endPromiseAtDeadPoint(*events->offConstraintsFrom());
+  if (events_) {
+    advance(time, *events_);
+    if (!promiseEnd_ && events_->offConstraintsFrom()) endPromiseAtDeadPoint(*events_->offConstraintsFrom());
   } else {
-    advance(time, std::get<SteppedMotion>(motion_));
+    advance(time, *steps_);
   }
   const bool hasStepped = island_.step.time + island_.step.timeStep >= island_.time;
   coordinates_.endStep(island_.time - before, hasStepped ? island_.step.state : island_.state);
@@ -132,31 +134,37 @@ void IslandSolver::advance(double time) {
 
 /// Whether a trial of events showed at its start that they do not serve.
 bool IslandSolver::mayNotGoOn() const {
-  const auto* events = std::get_if<EventMotion>(&motion_);
-  return promiseEnd_ && events && !events->fallbackReason().empty();
+  return promiseEnd_ && events_ && !events_->fallbackReason().empty();
 }
 
 bool IslandSolver::keepsConstraints() const {
-  if (const auto* events = std::get_if<EventMotion>(&motion_)) return events->keepsConstraints();
-  return std::get<SteppedMotion>(motion_).keepsConstraints();
+  return events_ ? events_->keepsConstraints() : steps_->keepsConstraints();
 }
 
 /// Steps of one length take over where events do not serve, and give back where nothing touches, or after a while. At
 /// visual accuracies they go on to the end: trials cost more than they may save.
 void IslandSolver::changeMotion() {
-  if (const auto* events = std::get_if<EventMotion>(&motion_)) {
-    const std::string_view reason = events->fallbackReason();
-    if (reason.empty()) return;
-    if (!promiseEnd_) endPromise(*events);
+  if (events_) {
+    if (events_->fallbackReason().empty()) return;
+    if (!promiseEnd_) endPromise(*events_);
     island_.assembly.mechanism.contacts.clear();
     return changeToSteps();
   }
-  const auto& steps = std::get<SteppedMotion>(motion_);
-  if (!method_.isAdaptive() || steps.isAtRest()) return;
-  if (!steps.isFree() && island_.time < nextTrial_) return;
+  if (!method_.isAdaptive() || steps_->isAtRest()) return;
+  if (!steps_->isFree() && island_.time < nextTrial_) return;
   nextTrial_ = island_.time + trialTime_;
-  if (steps.isFree()) trialTime_ = kTrialTime;
-  if (steps.isFree() || steps.mayServeEvents()) motion_.emplace<EventMotion>(island_, ropes_, method_, true);
+  if (steps_->isFree()) trialTime_ = kTrialTime;
+  if (steps_->isFree() || steps_->mayServeEvents()) moveByEvents(true);
+}
+
+void IslandSolver::moveByEvents(bool isTrial) {
+  steps_.reset();
+  events_ = std::make_unique<EventMotion>(island_, ropes_, method_, isTrial);
+}
+
+void IslandSolver::moveBySteps(const ChosenMethod& steps) {
+  events_.reset();
+  steps_ = std::make_unique<SteppedMotion>(island_, ropes_, steps);
 }
 
 double IslandSolver::contactTimeStep() const {
@@ -168,7 +176,7 @@ void IslandSolver::changeToSteps() {
   nextTrial_ = island_.time + trialTime_;
   trialTime_ *= 2;
   if (isVisual()) method_ = steps;
-  motion_.emplace<SteppedMotion>(island_, ropes_, steps);
+  moveBySteps(steps);
 }
 
 void IslandSolver::endPromise(const EventMotion& events) {
@@ -190,23 +198,21 @@ void IslandSolver::interpolateAt(double time, bool byStep) {
   const double fraction = (time - island_.step.time) / island_.step.timeStep;
   interpolate(island_.step, fraction, reported_);
   place(island_.assembly.mechanism.driven, time, reported_);
-  if (const auto* moved = std::get_if<EventMotion>(&motion_); moved && byStep)
-    withForcesOfStep(*moved, [&] { stepTo(time); });
+  if (events_ && byStep)
+    withForcesOfStep([&] { stepTo(time); });
   else
     stepWhereForcesJump(time);
-  if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->addContactMotion(fraction, reported_);
+  if (steps_) steps_->addContactMotion(fraction, reported_);
   const Mechanism& mechanism = island_.assembly.mechanism;
-  const auto* events = std::get_if<EventMotion>(&motion_);
-  if (events && events->ledgerOfStep()) setLedger(*events->ledgerOfStep(), island_.step, fraction, reported_);
-  if (events && keepsConstraints && !events->contactsOfStep().empty()) {
-    project(events->contactsOfStep());
+  if (events_ && events_->ledgerOfStep()) setLedger(*events_->ledgerOfStep(), island_.step, fraction, reported_);
+  if (events_ && keepsConstraints && !events_->contactsOfStep().empty()) {
+    project(events_->contactsOfStep());
   } else if (keepsConstraints && solver_.hasConstraints()) {
     findStill();
     solver_.exclude(still_);
     solver_.project(reported_);
   }
-  if (events && !mechanism.motors.empty())
-    withForcesOfStep(*events, [this] { frameEquations_.keepTargets(reported_); });
+  if (events_ && !mechanism.motors.empty()) withForcesOfStep([this] { frameEquations().keepTargets(reported_); });
   numericalEnergy(reported_) = numericalEnergy(island_.step.startState);
   bookNumerical(energyConstant(mechanism, island_.step.startState), mechanism, reported_);
 }
@@ -230,12 +236,11 @@ bool IslandSolver::mayFrictionTurn(const std::vector<ContactConstraint>& contact
 /// with them, say nothing of what is between them, though the step is right. The rates of the reported state tell that
 /// from the forces there: if they do, it becomes the end of a shorter step from the same start.
 void IslandSolver::stepWhereForcesJump(double time) {
-  const auto* events = std::get_if<EventMotion>(&motion_);
-  if (!events || !mayFrictionTurn(events->contactsOfStep())) return;
+  if (!events_ || !mayFrictionTurn(events_->contactsOfStep())) return;
   const Step& step = island_.step;
-  withForcesOfStep(*events, [&] {
+  withForcesOfStep([&] {
     setResting(still_);  // bodies that the end of the step has woken have rested in it
-    frameEquations_.evaluate(time, reported_, derivative_);
+    frameEquations().evaluate(time, reported_, derivative_);
     interpolateRate(step, (time - step.time) / step.timeStep, frameStep_.work);
     const Eigen::Index first = poseComponents(reported_), count = reported_.size() - kLedgerSize - first;
     const auto size = 1 + reported_.segment(first, count).array().abs();
@@ -249,19 +254,19 @@ void IslandSolver::stepTo(double time) {
   const Step& step = island_.step;
   setResting(still_);  // bodies that the end of the step has woken have rested in it
   frameStep_.startDerivativeIsKnown = false;
-  method_.integrate(frameEquations_.rightHandSide(), step.startState, step.time, time - step.time, frameStep_);
+  method_.integrate(frameEquations().rightHandSide(), step.startState, step.time, time - step.time, frameStep_);
   reported_ = frameStep_.state;
   place(island_.assembly.mechanism.driven, time, reported_);
 }
 
 template <class Evaluate>
-void IslandSolver::withForcesOfStep(const EventMotion& events, const Evaluate& evaluate) {
+void IslandSolver::withForcesOfStep(const Evaluate& evaluate) {
   Mechanism& mechanism = island_.assembly.mechanism;
   // What has ended the step may have changed forces, and brought bodies to rest.
-  std::vector<ContactConstraint> contacts = events.contactsOfStep();
-  Constraints constraints = events.constraintsOfStep();
-  std::vector<PushForce> pushes = events.pushesOfStep();
-  std::vector<JointMotor> motors = events.motorsOfStep();
+  std::vector<ContactConstraint> contacts = events_->contactsOfStep();
+  Constraints constraints = events_->constraintsOfStep();
+  std::vector<PushForce> pushes = events_->pushesOfStep();
+  std::vector<JointMotor> motors = events_->motorsOfStep();
   const auto swapForces = [&] {
     std::swap(contacts, mechanism.contacts);
     std::swap(constraints, mechanism.constraints), std::swap(pushes, mechanism.pushes);
@@ -290,29 +295,31 @@ VectorX IslandSolver::motorForces(double time) {
   const std::vector<JointMotor>& motors = island_.assembly.mechanism.motors;
   const VectorX& last = island_.equations.motorForces();
   const bool isKnown = last.size() == std::ssize(motors);
-  const auto* events = std::get_if<EventMotion>(&motion_);
-  if (const auto* steps = std::get_if<SteppedMotion>(&motion_);
-      steps && steps->motorForces().size() == last.size() && isKnown)
-    return steps->motorForces();
-  frameEquations_.setMotorSteps(island_.equations.motorSteps());
-  const auto evaluate = [&] { frameEquations_.evaluate(time, reported_, derivative_); };
-  if (events && time < island_.time - sameTime(time)) {
-    withForcesOfStep(*events, evaluate);
+  if (steps_ && steps_->motorForces().size() == last.size() && isKnown) return steps_->motorForces();
+  frameEquations().setMotorSteps(island_.equations.motorSteps());
+  const auto evaluate = [&] { frameEquations().evaluate(time, reported_, derivative_); };
+  if (events_ && time < island_.time - sameTime(time)) {
+    withForcesOfStep(evaluate);
   } else {
     setResting(island_.equations.resting());
     evaluate();
   }
-  VectorX forces = frameEquations_.motorForces();
+  VectorX forces = frameEquations().motorForces();
   for (std::size_t i = 0; i < motors.size() && isKnown; ++i)
-    if (frameEquations_.isResting(motors[i].joint))
+    if (frameEquations().isResting(motors[i].joint))
       forces[static_cast<Eigen::Index>(i)] = last[static_cast<Eigen::Index>(i)];
   return forces;
+}
+
+EquationsOfMotion& IslandSolver::frameEquations() {
+  if (!frameEquations_) frameEquations_ = std::make_unique<EquationsOfMotion>(island_.assembly.mechanism);
+  return *frameEquations_;
 }
 
 /// For what is asked of frames.
 void IslandSolver::setResting(const std::vector<char>& resting) {
   for (std::size_t i = 0; i < resting.size(); ++i)
-    if (frameEquations_.isResting(i) != (resting[i] != 0)) frameEquations_.setResting(i, resting[i] != 0);
+    if (frameEquations().isResting(i) != (resting[i] != 0)) frameEquations().setResting(i, resting[i] != 0);
 }
 
 /// Projects the interpolated state onto the constraint manifold: no gaps at active contacts, no constraint errors.

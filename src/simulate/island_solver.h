@@ -1,8 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
-#include <variant>
 #include <vector>
 
 #include "simulate/conservation_record.h"
@@ -16,13 +16,20 @@ namespace cradle {
 
 constexpr double kTrialTime = 0.05;  // s: after that, contacts that were too much for events are tried again
 
+/// What an island takes over from those that its bodies were in. Contact steps are those at their last step's end.
+struct IslandHistory {
+  std::optional<PromiseEnd> promiseEnd;
+  bool isInContactSteps = false;
+};
+
 /// An island in motion, with a clock of its own. Time goes on in steps of the method.
 class IslandSolver {
  public:
-  /// Keeps a reference to `scene`. The method is one that takes steps. `promiseEnd`: of bodies of the island before it
-  /// began to move; it begins in contact steps then.
-  IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method,
-               std::optional<PromiseEnd> promiseEnd = {});
+  /// Keeps a reference to `scene`. The method is one that takes steps.
+  IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method);
+
+  /// One of several, which are judged together: finish does nothing. Contact steps of before go on.
+  IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method, IslandHistory history);
   IslandSolver(const IslandSolver&) = delete;
   IslandSolver& operator=(const IslandSolver&) = delete;
 
@@ -36,12 +43,26 @@ class IslandSolver {
   /// of an interpolant.
   const VectorX& stepToReported();
 
+  /// From now on no step goes beyond `time` (s).
+  void stopAt(double time) { island_.lastStepEnd = time; }
+
+  /// s: the end of the last step.
+  double clock() const { return island_.time; }
+
+  bool isResting(std::size_t body) const { return island_.equations.isResting(body); }
+
   /// Begins to note what the bodies sweep until `to` (s), from the last call of stateAt on; that must not be beyond
   /// `to`.
   void beginSweep(double to);
 
   /// Since the last call of beginSweep, up to the last call of stateAt.
   const SweptBodies& swept() const { return swept_; }
+
+  /// Frees memory that the next step takes again.
+  void releaseScratch() {
+    releaseStages(island_.step);
+    frameStep_ = {};
+  }
 
   /// To be called after the last frame: the accuracy asked was not kept if energy or momenta of the frames changed by
   /// more than kMaxNumericalRatio times the accuracy without a cause.
@@ -51,7 +72,9 @@ class IslandSolver {
   const std::vector<JointState>& jointStates() const { return jointStates_; }
 
   const Assembly& assembly() const { return island_.assembly; }
-  long evaluations() const { return island_.equations.evaluations() + frameEquations_.evaluations(); }
+  long evaluations() const {
+    return island_.equations.evaluations() + (frameEquations_ ? frameEquations_->evaluations() : 0);
+  }
 
   /// Events since the last call: up to the end of the step under way.
   std::vector<Event> takeEvents() { return island_.log.take(); }
@@ -61,10 +84,18 @@ class IslandSolver {
   /// Set from when on the accuracy asked is not promised any more.
   const std::optional<PromiseEnd>& promiseEnd() const { return promiseEnd_; }
 
+  /// Pushes that act at a time (s) up to the last step's end.
+  std::vector<StartedPush> pushesAt(double time) const { return island_.pushes.startedBy(time); }
+
+  /// What an island goes on with that begins from the last step's end.
+  IslandHistory history() const { return {promiseEnd_, steps_ != nullptr}; }
+
  private:
   void advance(double time);
   void changeMotion();
   void changeToSteps();
+  void moveByEvents(bool isTrial);
+  void moveBySteps(const ChosenMethod& steps);
   double contactTimeStep() const;
   void endPromise(const EventMotion& events);
   void endPromiseAtDeadPoint(double time);
@@ -82,9 +113,11 @@ class IslandSolver {
   void stepTo(double time);
   /// Calls evaluate() with contacts, constraints, pushes and motors as they were in the last step of events.
   template <class Evaluate>
-  void withForcesOfStep(const EventMotion& events, const Evaluate& evaluate);
+  void withForcesOfStep(const Evaluate& evaluate);
   void findJointStates(double time);
   VectorX motorForces(double time);
+  /// For what is asked of frames: the motion knows nothing of them.
+  EquationsOfMotion& frameEquations();
   void setResting(const std::vector<char>& resting);
   void project(const std::vector<ContactConstraint>& contacts);
   void findStill();
@@ -94,10 +127,11 @@ class IslandSolver {
   LimitEvents ropes_;
   JointCoordinates coordinates_;
   ConstraintSolver solver_;
-  EquationsOfMotion frameEquations_;  // for what is asked of frames: the motion knows nothing of it
-  std::variant<std::monostate, EventMotion, SteppedMotion> motion_;
+  std::unique_ptr<EquationsOfMotion> frameEquations_;  // none before they are asked for
+  std::unique_ptr<EventMotion> events_;                // or ...
+  std::unique_ptr<SteppedMotion> steps_;               // ... what moves the island
   ChosenMethod method_;
-  ConservationRecord record_;
+  std::optional<ConservationRecord> record_;  // unless others judge the island
   std::optional<PromiseEnd> promiseEnd_;
   double nextTrial_ = 0;           // s: when events may serve again
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not

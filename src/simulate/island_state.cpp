@@ -10,7 +10,8 @@
 namespace cradle {
 
 IslandState::IslandState(const Scene& source, Assembly parts)
-    : scene(source),
+    : lastStepEnd(source.duration),
+      scene(source),
       assembly(std::move(parts)),
       equations(assembly.mechanism),
       rightHandSide(equations.rightHandSide()),
@@ -21,7 +22,9 @@ IslandState::IslandState(const Scene& source, Assembly parts)
       time(assembly.startTime),
       state(assembly.state),
       motions_(assembly.mechanism.bodies.size()),
-      nextJump_(nextJump(assembly.mechanism.driven, time)) {}
+      nextJump_(nextJump(assembly.mechanism.driven, time)) {
+  assembly.mechanism.pushes = pushes.forces();
+}
 
 void IslandState::findNearPairs(double margin) {
   const ContactGeometry& geometry = assembly.geometry;

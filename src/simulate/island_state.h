@@ -38,6 +38,9 @@ struct IslandState {
   /// s: the next instant at which forces change or the motion of a driven body has a jump. No step may go beyond it.
   double nextChange() const { return std::min(pushes.nextChange(), nextJump_); }
 
+  /// s: no step may go beyond it: the scene's end, or where the island is to stop before that.
+  double lastStepEnd = 0;
+
   /// Lets pushes begin and end that do so now, and wakes what they act upon, and driven bodies that begin to move. True
   /// if there were any, or driven bodies that have come to a stop.
   bool makeChanges();

@@ -129,7 +129,6 @@ LimitEvents::LimitEvents(IslandState& island)
     : island_(island),
       assembly_(island.assembly),
       equations_(island.equations),
-      solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       followedTime_(assembly_.startTime),
       sceneConstraints_(assembly_.mechanism.constraints.size()),
       tautRow_(assembly_.limits.size(), -1),
@@ -331,11 +330,12 @@ void LimitEvents::pull(double time, const std::vector<Stretch>& stretches, Vecto
     pulls.push_back({&limit, stretch.reboundSpeed});
   }
   const VectorX before = state;
-  if (solver_.hasConstraints()) solver_.factorize(state);
-  applyPulls(pulls, assembly_.mechanism.bodies, solver_, state);
+  ConstraintSolver solver(assembly_.mechanism.constraints, assembly_.mechanism.bodies);
+  if (solver.hasConstraints()) solver.factorize(state);
+  applyPulls(pulls, assembly_.mechanism.bodies, solver, state);
   impactEnergy(state) += energyTakenBy(pulls, before, state);
   if (!assembly_.mechanism.driven.empty())
-    pushWork(state) += workOfDriven(pulls, ledVelocities(assembly_.mechanism.bodies, solver_, before));
+    pushWork(state) += workOfDriven(pulls, ledVelocities(assembly_.mechanism.bodies, solver, before));
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const auto& [limit, speed, reboundSpeed, isLoaded] = stretches[i];
     const bool rebounds = reboundSpeed > 0;
@@ -347,10 +347,10 @@ void LimitEvents::pull(double time, const std::vector<Stretch>& stretches, Vecto
   }
   bookNumerical(energyConstant(assembly_.mechanism, before), assembly_.mechanism, state);
   rebuildConstraints();
-  if (!solver_.hasConstraints()) return;
+  if (!solver.hasConstraints()) return;
   const VectorX pulled = state;
-  solver_.factorize(state);
-  solver_.constrainVelocities(state);
+  solver.factorize(state);
+  solver.constrainVelocities(state);
   bookProjection(pulled, assembly_.mechanism, state);
 }
 

@@ -97,7 +97,6 @@ class LimitEvents {
   IslandState& island_;
   Assembly& assembly_;
   EquationsOfMotion& equations_;
-  ConstraintSolver solver_;
   double timeStep_ = 0;
   double followedTime_;           // s: when turns were followed last
   std::size_t sceneConstraints_;  // those that are no limits

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "mesh/ray_cast.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
@@ -35,16 +35,45 @@ std::string missText(const Push& push, const Body& body, double time, const Vec3
 }  // namespace
 
 PushSchedule::PushSchedule(const Scene& scene, const Assembly& assembly, EventLog& log) : scene_(scene), log_(log) {
-  for (const std::size_t index : assembly.pushes) {
-    const Push& push = scene.pushes[index];
-    const int body = indexAmong(assembly.sceneBodies, push.body);
-    if (body != kFixed) planned_.push_back({&push, body, {}});
-  }
-  waiting_.resize(planned_.size());
-  std::iota(waiting_.rbegin(), waiting_.rend(), std::size_t{0});
+  for (const std::size_t index : assembly.pushes) plan(index, assembly);
+  for (std::size_t i = planned_.size(); i-- > 0;)
+    if (!planned_[i].hasBegun) waiting_.push_back(i);
   std::stable_sort(waiting_.begin(), waiting_.end(),
                    [this](std::size_t a, std::size_t b) { return planned_[a].push->start > planned_[b].push->start; });
   findNextChange();
+}
+
+/// A push that was due before a continued island and does not act there is over, or its ray has missed.
+void PushSchedule::plan(std::size_t index, const Assembly& assembly) {
+  const Push& push = scene_.pushes[index];
+  const int body = indexAmong(assembly.sceneBodies, push.body);
+  if (body == kFixed) return;
+  const auto started = std::find_if(assembly.startedPushes.begin(), assembly.startedPushes.end(),
+                                    [&](const StartedPush& other) { return other.push == index; });
+  const bool acts = started != assembly.startedPushes.end();
+  const double start = assembly.startTime;
+  if (!acts && assembly.isContinued && (start == 0 ? push.start <= 0 : push.start < start - sameTime(start))) return;
+  if (acts) acting_.push_back(planned_.size());
+  planned_.push_back({&push, body, acts ? forceOf(push, body, started->point) : PushForce(), acts});
+}
+
+std::vector<StartedPush> PushSchedule::startedBy(double time) const {
+  const double until = time + sameTime(time);
+  std::vector<StartedPush> started;
+  for (const Planned& planned : planned_)
+    if (planned.hasBegun && planned.push->start <= until && planned.end() > until)
+      started.push_back({static_cast<std::size_t>(planned.push - scene_.pushes.data()), planned.force.point.point});
+  return started;
+}
+
+std::vector<PushForce> PushSchedule::forces() const {
+  std::vector<PushForce> forces;
+  for (const std::size_t index : acting_) forces.push_back(planned_[index].force);
+  return forces;
+}
+
+PushForce PushSchedule::forceOf(const Push& push, int body, const Vec3& point) {
+  return {{body, point}, push.force, push.torque.value_or(Vec3::Zero())};
 }
 
 void PushSchedule::findNextChange() {
@@ -80,8 +109,7 @@ std::vector<int> PushSchedule::apply(double time, const VectorX& state, std::vec
     }
     changed.push_back(planned.body);
   }
-  acting.clear();
-  for (const std::size_t index : acting_) acting.push_back(planned_[index].force);
+  acting = forces();
   findNextChange();
   return changed;
 }
@@ -105,7 +133,7 @@ bool PushSchedule::begin(Planned& planned, double time, const VectorX& state) {
   } else {
     point = planned.push->torque ? center : std::get<Vec3>(planned.push->target);
   }
-  planned.force = {{planned.body, point - center}, planned.push->force, planned.push->torque.value_or(Vec3::Zero())};
+  planned.force = forceOf(*planned.push, planned.body, point - center);
   log_.recordBody(time, EventKind::pushStart, planned.body, motionOf(planned.force.point, state).position);
   return true;
 }

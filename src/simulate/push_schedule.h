@@ -18,6 +18,12 @@ class PushSchedule {
   /// go beyond it. O(1): every step asks.
   double nextChange() const { return nextChange_; }
 
+  /// Those that act at a time (s) that is not later than the last call of apply.
+  std::vector<StartedPush> startedBy(double time) const;
+
+  /// The forces of those that act now.
+  std::vector<PushForce> forces() const;
+
   /// Puts the pushes that act from `time` on into `acting`. Returns the moving bodies on which one begins or ends.
   /// O(pushes that act).
   std::vector<int> apply(double time, const VectorX& state, std::vector<PushForce>& acting);
@@ -31,6 +37,8 @@ class PushSchedule {
     PushForce force;
     bool hasBegun = false;
   };
+  void plan(std::size_t index, const Assembly& assembly);
+  static PushForce forceOf(const Push& push, int body, const Vec3& point);
   bool begin(Planned& planned, double time, const VectorX& state);
   std::vector<std::size_t> takeDue(double time);
   void findNextChange();

@@ -21,7 +21,6 @@ RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& 
       geometry_(geometry),
       equations_(equations),
       tolerances_(stepTolerancesOf({smallestSize(geometry), mechanism.gravity.norm()})),
-      solver_(mechanism.constraints, mechanism.bodies),
       sizes_(mechanism.bodies.size(), 0.0),
       wakeTimes_(mechanism.bodies.size(), -INFINITY),
       restingIsland_(mechanism.bodies.size(), -1) {
@@ -91,15 +90,16 @@ bool RestingBodies::canBeInEquilibrium(double time, const std::vector<int>& isla
 /// Adds to the accelerations what forces at the supports give that leave as little closing and sliding as can be.
 void RestingBodies::applySupportForces(const std::vector<Contact>& supports, const std::vector<double>& frictions,
                                        const VectorX& state, VectorX& accelerations) {
-  if (solver_.hasConstraints()) solver_.factorize(state);
+  ConstraintSolver solver(mechanism_.constraints, mechanism_.bodies);
+  if (solver.hasConstraints()) solver.factorize(state);
   if (supports.size() <= kFewSupports) {
-    const ContactDelassus cones(supports, ImpulseResponse(mechanism_.bodies, solver_), state);
+    const ContactDelassus cones(supports, ImpulseResponse(mechanism_.bodies, solver), state);
     const VectorX free = cones.velocitiesIn(accelerations);
     cones.apply(solveFrictionalContact(cones.matrix(), free, frictions).impulses, accelerations);
     return;
   }
   SparseDelassus cones;
-  cones.set(supports, mechanism_.bodies, solver_, state);
+  cones.set(supports, mechanism_.bodies, solver, state);
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(supports.size());
   WarmStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
   const VectorX free = cones.velocitiesIn(accelerations);

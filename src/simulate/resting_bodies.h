@@ -44,7 +44,6 @@ class RestingBodies {
   const ContactGeometry& geometry_;
   EquationsOfMotion& equations_;
   StepTolerances tolerances_;
-  ConstraintSolver solver_;
   std::vector<double> sizes_;      // m: bounding radius of each moving body; radius of gyration if it does not collide
   double stillTime_ = 0;           // s
   std::vector<double> wakeTimes_;  // s, of each body's last waking

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
+#include <numeric>
 #include <utility>
 
 #include "constraints/invariants.h"
@@ -92,7 +95,7 @@ void World::move(const Scene& scene, std::size_t index, Assembly assembly) {
     case MotionKind::fixedSteps:
     case MotionKind::errorSteps:
       if (IslandGroup::mayDivide(scene, island)) {
-        groups_.push_back(std::make_unique<IslandGroup>(scene, island, std::move(assembly)));
+        groups_.push_back(std::make_unique<IslandGroup>(scene, island, std::move(assembly), threads_));
         islandOfGroup_.push_back(index);
         return;
       }
@@ -113,30 +116,17 @@ void World::addFlight(Assembly assembly) {
 Frame World::frameAt(long number, double time, const std::function<void(double time)>& reached) {
   throwIfInterrupted();
   Frame frame{number, time, std::vector<BodyState>(moving_), {}, std::vector<JointState>(joints_)};
-  const auto add = [&](auto& simulation, const auto&... told) {
-    addTo(frame, simulation.assembly(), simulation.stateAt(time, told...));
-    const std::vector<Event> events = simulation.takeEvents();
-    events_.insert(events_.end(), events.begin(), events.end());
-  };
-  const double island =
-      1.0 / static_cast<double>(std::max<std::size_t>(1, solvers_.size() + groups_.size()));  // of all
-  std::size_t done = 0;
-  std::function<void(double)> tellMean;
-  if (reached)
-    tellMean = [&](double now) {
-      const double ofFrame = static_cast<double>(done) * (time - lastTime_);
-      reached(lastTime_ + island * (ofFrame + std::min(now, time) - lastTime_));
-    };
+  const std::vector<const VectorX*> states = moveTo(time, reached);
+  std::size_t moved = 0;
   forEachSolver([&](auto& simulation, std::size_t) {
-    add(simulation, tellMean);
+    takeFrom(simulation, *states[moved++], frame);
     for (std::size_t i = 0; i < simulation.jointStates().size(); ++i)
       frame.joints[simulation.assembly().joints[i].index] = simulation.jointStates()[i];
-    ++done;
   });
   lastTime_ = time;
   notePromiseEnds();
-  for (const auto& spheres : spheres_) add(*spheres);
-  for (const auto& pile : softIslands_) add(*pile);
+  for (const auto& spheres : spheres_) takeFrom(*spheres, spheres->stateAt(time), frame);
+  for (const auto& pile : softIslands_) takeFrom(*pile, pile->stateAt(time), frame);
   for (FlyingIsland& island : flying_) {
     for (const FreeFlight& flight : island.flights) flight.moveTo(time, island.assembly.state);
     island.evaluations += std::ssize(island.flights);
@@ -148,6 +138,49 @@ Frame World::frameAt(long number, double time, const std::function<void(double t
                                                            now.angularVelocity};
   }
   return frame;
+}
+
+/// Moves islands that have solvers, then groups, to the time of a frame; returns their states.
+std::vector<const VectorX*> World::moveTo(double time, const std::function<void(double time)>& reached) {
+  std::vector<const VectorX*> states(solvers_.size() + groups_.size());
+  std::atomic<std::size_t> done = 0;
+  std::function<void(double)> tellMean;
+  if (reached)
+    tellMean = [&](double now) {
+      const double ofDone = static_cast<double>(done.load()) * (time - lastTime_);
+      reached(lastTime_ + (ofDone + std::min(now, time) - lastTime_) / static_cast<double>(states.size()));
+    };
+  std::vector<std::exception_ptr> failures(solvers_.size());
+  const auto moveSome = [&](int thread, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i, ++done) try {
+        states[i] = &solvers_[i]->stateAt(time, thread == 0 ? tellMean : nullptr);
+      } catch (...) {
+        failures[i] = std::current_exception();
+      }
+  };
+  const auto evaluationsSoFar = [this] {
+    return std::accumulate(solvers_.begin(), solvers_.end(), 0L,
+                           [](long sum, const auto& solver) { return sum + solver->evaluations(); });
+  };
+  const long before = evaluationsSoFar();
+  if (evaluationsOfFrame_ < kSharedEvaluations)
+    moveSome(0, 0, solvers_.size());
+  else
+    threads_.share(solvers_.size(), 1, moveSome);
+  evaluationsOfFrame_ = evaluationsSoFar() - before;
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+  for (std::size_t i = 0; i < groups_.size(); ++i, ++done)
+    states[solvers_.size() + i] = &groups_[i]->stateAt(time, tellMean);
+  return states;
+}
+
+/// Adds the states and events of an island at the time of a frame.
+template <class Simulation>
+void World::takeFrom(Simulation& simulation, const VectorX& state, Frame& frame) {
+  addTo(frame, simulation.assembly(), state);
+  const std::vector<Event> events = simulation.takeEvents();
+  events_.insert(events_.end(), events.begin(), events.end());
 }
 
 void World::finish() {

@@ -69,6 +69,9 @@ class World {
   void decideStartPromises(const Scene& scene);
   void notePromiseEnds();
   void addFlight(Assembly assembly);
+  std::vector<const VectorX*> moveTo(double time, const std::function<void(double time)>& reached);
+  template <class Simulation>
+  void takeFrom(Simulation& simulation, const VectorX& state, Frame& frame);
   void addTo(Frame& frame, const Assembly& assembly, const VectorX& state) const;
 
   Plan plan_;
@@ -77,7 +80,9 @@ class World {
   template <class Visit>
   void forEachSolver(const Visit& visit) const;
 
+  WorkerThreads threads_{hardwareThreads()};
   std::vector<std::unique_ptr<IslandSolver>> solvers_;
+  long evaluationsOfFrame_ = 0;  // of solvers, in the last one
   std::vector<std::unique_ptr<IslandGroup>> groups_;
   std::vector<std::size_t> islandOfSolver_, islandOfGroup_;  // of the plan
   std::vector<std::optional<PromiseEnd>> promiseEnds_;       // by island

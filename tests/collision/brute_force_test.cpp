@@ -67,7 +67,7 @@ void addCollider(SolidPair& pair, const Solid& solid, int body) {
   for (const Vec3& corner : solid.corners)
     collider.boundingRadius = std::max(collider.boundingRadius, corner.norm() + solid.radius);
   if (solid.isBox) {
-    collider.polytope = polytopeOf(Box{solid.boxSize}, {});
+    collider.polytope = std::make_shared<const Polytope>(polytopeOf(Box{solid.boxSize}, {}));
     collider.points = collider.polytope->vertices;
   }
   pair.geometry.colliders.push_back(collider);

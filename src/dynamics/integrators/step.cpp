@@ -53,6 +53,10 @@ void prepareInterpolant(const RightHandSide& rightHandSide, Step& step) {
     dop853Corrections(rightHandSide, step);
 }
 
+void releaseStages(Step& step) {
+  if (step.hasCorrections) step.stageDerivatives = {};
+}
+
 void interpolate(const Step& step, double fraction, VectorX& state) {
   CRADLE_CHECK(step.hasEndDerivative);
   const double s = fraction, r = 1 - fraction;

@@ -64,6 +64,9 @@ void evaluateEndDerivative(const RightHandSide& rightHandSide, Step& step);
 /// three more.
 void prepareInterpolant(const RightHandSide& rightHandSide, Step& step);
 
+/// Frees what only the stages need, if the step may be interpolated without them.
+void releaseStages(Step& step);
+
 /// State at time + fraction * timeStep by the step's interpolant, exact at both ends. 0 <= fraction <= 1.
 void interpolate(const Step& step, double fraction, VectorX& state);
 

@@ -113,8 +113,7 @@ EventMotion::EventMotion(IslandState& island, LimitEvents& ropes, const ChosenMe
 void EventMotion::advance(double frame) {
   double& time = island_.time;
   Step& step = island_.step;
-  const double stepEnd =
-      std::min({island_.scene.duration, island_.nextChange(), contacts_.active().nextFreeDirection()});
+  const double stepEnd = std::min({island_.lastStepEnd, island_.nextChange(), contacts_.active().nextFreeDirection()});
 
   // How far do bodies move until the first event?
   const std::optional<Event> found = stepToFirstEvent(stepEnd);

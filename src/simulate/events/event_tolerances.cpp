@@ -9,7 +9,7 @@
 namespace cradle {
 
 EventScales eventScalesOf(const IslandState& island) {
-  return {island.scene.accuracy, island.scene.duration, smallestSize(island.assembly.geometry),
+  return {island.scene.accuracy, island.scene.duration, island.assembly.smallestSize,
           island.assembly.mechanism.gravity.norm()};
 }
 

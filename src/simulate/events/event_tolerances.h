@@ -11,7 +11,7 @@ namespace cradle {
 struct EventScales {
   double accuracy = 0;  // A, asked; m, where it is that of a place
   double duration = 0;  // T, s: of the run
-  double size = 0;      // L, m: of the smallest body
+  double size = 0;      // L, m: of the smallest body that may ever be in the island
   double gravity = 0;   // g, m/s^2
 };
 EventScales eventScalesOf(const IslandState& island);

@@ -133,9 +133,9 @@ void SteppedMotion::countSteps() {
   stepNumber_ = static_cast<long>(std::floor(island_.time / method_.timeStep + kTimeRounding));
 }
 
-/// The end of the fixed step under way, or of the run; a push that begins or ends comes first.
+/// The end of the fixed step under way, or of all; a push that begins or ends comes first.
 double SteppedMotion::nextStepEnd() const {
-  double end = island_.scene.duration;
+  double end = island_.lastStepEnd;
   const double gridEnd = static_cast<double>(stepNumber_ + 1) * method_.timeStep;
   if (gridEnd <= end - kTimeRounding * method_.timeStep) end = gridEnd;
   return std::min(end, island_.nextChange());
