@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 
 #include "core/error.h"
 #include "simulate/plan/near_spheres.h"
-#include "simulate/plan/plan_islands.h"
+#include "simulate/shared_islands.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -62,7 +61,6 @@ IslandGroup::IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly al
       record_(all_, scene.accuracy),
       clusters_(scene, plan),
       islandOfCluster_(clusters_.count()),
-      origins_(clusters_.count()),
       twins_(clusters_.count()),
       isToldResting_(scene.bodies.size(), 0) {
   for (const int body : all_.sceneBodies) clusterOfBody_.push_back(clusters_.of(body));
@@ -126,18 +124,13 @@ void IslandGroup::addWindow(double length, const std::function<void(double time)
 
 /// Moves the islands that have not moved through the window yet.
 void IslandGroup::moveAll(double end, const std::function<void(double time)>& reached) {
-  std::vector<Island*> left;
+  std::vector<Island*> waiting;
   for (Island& island : islands_)
-    if (!island.hasMoved) left.push_back(&island);
+    if (!island.hasMoved) waiting.push_back(&island);
   const std::vector<double> times = timesUntil(end);
-  const auto moveSome = [&](int thread, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) move(*left[i], times, thread == 0 ? reached : nullptr);
-  };
-  if (evaluationsOfWindow_ < kSharedEvaluations)
-    moveSome(0, 0, left.size());
-  else
-    threads_.share(left.size(), 1, moveSome);
-  for (const Island* island : left)
+  shareIslands(threads_, waiting.size(), evaluationsOfWindow_,
+               [&](int thread, std::size_t i) { move(*waiting[i], times, thread == 0 ? reached : nullptr); });
+  for (const Island* island : waiting)
     if (island->failure) std::rethrow_exception(island->failure);
 }
 
@@ -164,7 +157,7 @@ bool IslandGroup::isWorthParting(const Island& island) {
 
 /// Clusters of one island that do not stay apart over a time (s), or are not to part, joined.
 DisjointSets IslandGroup::nearWithinIslands(double horizon) const {
-  DisjointSets joined = twins_;
+  DisjointSets joined = twins_.together();
   visitNear(horizon, kApartMargin, [&](int a, int b) {
     if (islandIndexOf(a) == islandIndexOf(b)) joined.join(a, b);
   });
@@ -250,17 +243,10 @@ void IslandGroup::regroup(const std::vector<std::vector<int>>& sets) {
     settled_ += old.startLedger;
     evaluations_ += old.solver->evaluations();
   }
-  for (std::size_t i = 0; i < islands_.size(); ++i)
-    for (const int cluster : islands_[i].clusters) {
-      islandOfCluster_[static_cast<std::size_t>(cluster)] = i;
-      origins_.join(islands_[i].clusters.front(), cluster);
-    }
-  origins_.flatten();
-  for (const Island& old : before)
-    if (old.solver)
-      hasParted_ = hasParted_ || std::any_of(old.clusters.begin(), old.clusters.end(), [&](int cluster) {
-                     return islandIndexOf(cluster) != islandIndexOf(old.clusters.front());
-                   });
+  for (std::size_t i = 0; i < islands_.size(); ++i) {
+    for (const int cluster : islands_[i].clusters) islandOfCluster_[static_cast<std::size_t>(cluster)] = i;
+    twins_.connect(islands_[i].clusters);
+  }
 }
 
 /// The islands that had these clusters before; none at the scene's start.
@@ -394,36 +380,15 @@ bool IslandGroup::mergeThoseThatMet() {
   return true;
 }
 
-/// Joins islands of one origin with events whose times differ by rounding alone, and keeps these bodies joined: the two
-/// sides of a mirror image would drift apart tenfold at each impact, until they meet one after the other what they
-/// should meet at once. Times of equal bits show no difference yet. True if there are any.
+/// Joins islands that are twins. True if there are any.
 bool IslandGroup::joinTwins(DisjointSets& joined) {
-  if (!hasParted_) return false;
-  struct Instant {
-    int origin;
-    double time;
-    int cluster;
-  };
-  std::vector<Instant> instants;
-  for (const Island& island : islands_)
-    for (const Event& event : island.events)
-      if (const int cluster = clusterOf(event); cluster >= 0)
-        instants.push_back({origins_.islandOf(cluster), event.time, cluster});
-  std::sort(instants.begin(), instants.end(), [](const Instant& a, const Instant& b) {
-    return std::tie(a.origin, a.time, a.cluster) < std::tie(b.origin, b.time, b.cluster);
-  });
-  bool isAny = false;
-  for (std::size_t i = 1; i < instants.size(); ++i) {
-    const Instant& b = instants[i];
-    const auto isNear = [&](const Instant& a) { return a.origin == b.origin && b.time <= a.time + sameTime(a.time); };
-    for (std::size_t k = i; k-- > 0 && isNear(instants[k]);) {
-      const Instant& a = instants[k];
-      if (a.time == b.time || islandIndexOf(a.cluster) == islandIndexOf(b.cluster)) continue;
-      joined.join(a.cluster, b.cluster), twins_.join(a.cluster, b.cluster);
-      isAny = true;
-    }
-  }
-  return isAny;
+  std::vector<Twins::Instant> events;
+  for (std::size_t i = 0; i < islands_.size(); ++i)
+    for (const Event& event : islands_[i].events)
+      if (const int cluster = clusterOf(event); cluster >= 0) events.push_back({event.time, cluster, i});
+  const std::vector<std::pair<int, int>> twins = twins_.find(events);
+  for (const auto& [a, b] : twins) joined.join(a, b);
+  return !twins.empty();
 }
 
 /// The cluster of an event's first body that has one; -1: all its bodies are driven or fixed.

@@ -14,6 +14,7 @@
 #include "simulate/clusters.h"
 #include "simulate/conservation_record.h"
 #include "simulate/island_solver.h"
+#include "simulate/twins.h"
 
 namespace cradle {
 
@@ -122,9 +123,7 @@ class IslandGroup {
   const Clusters clusters_;
   std::vector<int> clusterOfBody_;  // by moving body; -1: driven
   std::vector<std::size_t> islandOfCluster_;
-  DisjointSets origins_;  // clusters that islands have connected, at one time or one after the other
-  DisjointSets twins_;    // of these, some that are not to part
-  bool hasParted_ = false;
+  Twins twins_;
   std::vector<Island> islands_;      // in the order of their first clusters
   Snapshot start_;                   // of the window under way
   Ledger settled_ = Ledger::Zero();  // J: ledgers of islands that are no more

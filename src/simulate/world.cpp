@@ -10,6 +10,7 @@
 
 #include "constraints/invariants.h"
 #include "core/interruption.h"
+#include "simulate/shared_islands.h"
 #include "simulate/start_overlaps.h"
 #include "simulate/thresholds.h"
 
@@ -151,22 +152,19 @@ std::vector<const VectorX*> World::moveTo(double time, const std::function<void(
       reached(lastTime_ + (ofDone + std::min(now, time) - lastTime_) / static_cast<double>(states.size()));
     };
   std::vector<std::exception_ptr> failures(solvers_.size());
-  const auto moveSome = [&](int thread, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i, ++done) try {
-        states[i] = &solvers_[i]->stateAt(time, thread == 0 ? tellMean : nullptr);
-      } catch (...) {
-        failures[i] = std::current_exception();
-      }
-  };
   const auto evaluationsSoFar = [this] {
     return std::accumulate(solvers_.begin(), solvers_.end(), 0L,
                            [](long sum, const auto& solver) { return sum + solver->evaluations(); });
   };
   const long before = evaluationsSoFar();
-  if (evaluationsOfFrame_ < kSharedEvaluations)
-    moveSome(0, 0, solvers_.size());
-  else
-    threads_.share(solvers_.size(), 1, moveSome);
+  shareIslands(threads_, solvers_.size(), evaluationsOfFrame_, [&](int thread, std::size_t i) {
+    try {
+      states[i] = &solvers_[i]->stateAt(time, thread == 0 ? tellMean : nullptr);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+    ++done;
+  });
   evaluationsOfFrame_ = evaluationsSoFar() - before;
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
