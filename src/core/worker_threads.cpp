@@ -6,7 +6,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kSpins = 2000;  // looks before a thread goes to sleep: some ten microseconds
+constexpr int kSpins = 2000;  // looks before a thread goes to sleep: up to 0.1 ms, by the length of a pause
 
 void pause() {
 #if defined(__x86_64__)

@@ -226,6 +226,15 @@ void satisfyConstraints(const Scene& scene, Assembly& assembly) {
         (assembly.state - before).cwiseAbs().maxCoeff()));
 }
 
+Assembly withoutColliders(const Scene& scene, const IslandPlan& island) {
+  Assembly assembly;
+  assembly.mechanism.gravity = scene.gravity;
+  assembly.pushes = island.pushes;
+  addBodies(scene, island, assembly);
+  addLinks(scene, island, assembly);
+  return assembly;
+}
+
 /// Colliders of the bodies that may touch.
 void addColliders(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
   ContactGeometry& geometry = assembly.geometry;
@@ -306,8 +315,8 @@ void warnOfSteps(const Scene& scene, const ChosenMethod& method, Assembly& assem
       fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
 }
 
-/// Visits those of a whole's pairs of colliders, ascending, that a part has, by the part's indices. `collidersOf` a
-/// pair are its two; `wholeOfPart`: the index in the whole of each collider of the part, ascending.
+/// Calls visit(a, b), by the part's indices, for each pair of the whole's colliders that are both in the part. Pairs
+/// are ascending; collidersOf(pair): the two in the whole; `wholeOfPart`: the index there of each collider of the part.
 template <class Pairs, class CollidersOf, class Visit>
 void forEachPairOfPart(const Pairs& pairs, const CollidersOf& collidersOf, const std::vector<std::size_t>& wholeOfPart,
                        const Visit& visit) {
@@ -343,8 +352,8 @@ void takeColliders(const Assembly& whole, const IslandPlan& part, Assembly& asse
     if (collider.body != kFixed) assembly.radii[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
   }
   geometry.materials = whole.geometry.materials;
-  const auto same = [](const auto& pair) { return pair; };
-  forEachPairOfPart(whole.geometry.excluded, same, wholeOfPart,
+  const auto itself = [](const auto& pair) { return pair; };
+  forEachPairOfPart(whole.geometry.excluded, itself, wholeOfPart,
                     [&](std::size_t a, std::size_t b) { geometry.excluded.emplace_back(a, b); });
   const auto collidersOf = [](const ColliderPair& pair) { return std::pair(pair.a, pair.b); };
   forEachPairOfPart(whole.geometry.unsolvedPairs, collidersOf, wholeOfPart, [&](std::size_t a, std::size_t b) {
@@ -359,11 +368,7 @@ void findPairsAtStart(Assembly& assembly) {
 }  // namespace
 
 Assembly assemble(const Scene& scene, const IslandPlan& island) {
-  Assembly assembly;
-  assembly.mechanism.gravity = scene.gravity;
-  assembly.pushes = island.pushes;
-  addBodies(scene, island, assembly);
-  addLinks(scene, island, assembly);
+  Assembly assembly = withoutColliders(scene, island);
   addColliders(scene, island, assembly);
   excludeJoined(scene, assembly);
   excludeWelded(scene, assembly);
@@ -378,11 +383,7 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
 }
 
 Assembly assemblePart(const Scene& scene, const IslandPlan& part, const Assembly& whole) {
-  Assembly assembly;
-  assembly.mechanism.gravity = scene.gravity;
-  assembly.pushes = part.pushes;
-  addBodies(scene, part, assembly);
-  addLinks(scene, part, assembly);
+  Assembly assembly = withoutColliders(scene, part);
   takeColliders(whole, part, assembly);
   assembly.smallestSize = whole.smallestSize;
   findPairsAtStart(assembly);
