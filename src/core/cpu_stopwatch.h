@@ -2,8 +2,14 @@
 
 namespace cradle {
 
-/// Adds up the CPU time of this thread between start() and stop(), without what reading the clock costs by itself: a
-/// system call, which would be a fifth of the cheapest simulations.
+/// s: the CPU time of this thread, and of what other threads have done for it (addCpuSecondsOfHelpers).
+double cpuSecondsOfThread();
+
+/// Counts CPU time (s) that other threads have spent on a task of this one.
+void addCpuSecondsOfHelpers(double seconds);
+
+/// Adds up the CPU time of this thread and its helpers between start() and stop(), without what reading the clock costs
+/// by itself: a system call, which would be a fifth of the cheapest simulations.
 class CpuStopwatch {
  public:
   CpuStopwatch();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include "core/cpu_stopwatch.h"
+
 namespace cradle {
 namespace {
 
@@ -50,6 +52,7 @@ void WorkerThreads::run(const std::function<void(int)>& task) {
   wake_.notify_all();
   task(0);
   meet();
+  addCpuSecondsOfHelpers(helperSeconds_.exchange(0));
 }
 
 void WorkerThreads::work(int thread) {
@@ -62,7 +65,9 @@ void WorkerThreads::work(int thread) {
       wake_.wait(lock, [&] { return isClosing_ || started_.load() > done; });
       if (isClosing_) return;
     }
+    const double before = cpuSecondsOfThread();
     (*task_)(thread);
+    helperSeconds_.fetch_add(cpuSecondsOfThread() - before);
     meet();
   }
 }

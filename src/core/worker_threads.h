@@ -62,6 +62,7 @@ class WorkerThreads {
   std::atomic<bool> isClosing_ = false;
   std::atomic<int> waiting_ = 0;
   std::atomic<long> meetings_ = 0;
+  std::atomic<double> helperSeconds_ = 0;  // CPU time of the task by all but the caller
 };
 
 /// Threads that this machine can run at once, at least 1.

@@ -4,6 +4,8 @@
 
 #include <ctime>
 
+#include "core/worker_threads.h"
+
 namespace cradle {
 namespace {
 
@@ -29,6 +31,17 @@ TEST(CpuStopwatch, AddsUpWhatIsBetweenStartAndStop) {
   }
   EXPECT_GT(stopwatch.seconds(), 3 * 0.0019);
   EXPECT_LT(stopwatch.seconds(), 3 * 0.005);
+}
+
+// Two threads that work for 4 ms each are 8 ms, and so are those that work for one of them.
+TEST(CpuStopwatch, AddsWhatOtherThreadsDoForThisOne) {
+  WorkerThreads threads(2);
+  CpuStopwatch stopwatch;
+  stopwatch.start();
+  threads.run([](int) { work(0.004); });
+  stopwatch.stop();
+  if (threads.count() < 2) GTEST_SKIP() << "the system has no second thread";
+  EXPECT_GT(stopwatch.seconds(), 0.0079);
 }
 
 TEST(CpuStopwatch, IsNeverNegative) {
