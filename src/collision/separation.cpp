@@ -17,6 +17,7 @@ namespace {
 // Of the lengths that enter: about 90 unit roundoffs, more than a height over a plane, a sum of some ten products,
 // differs between the body's frame and the world's.
 constexpr double kFrameRounding = 1e-14;
+constexpr double kSameNormal = 1e-9;  // sine between normals of one face
 
 /// The two colliders of a pair that is not against a plane, in their poses.
 struct PosedPair {
@@ -164,6 +165,13 @@ bool hasPinnedPlaces(const ContactGeometry& geometry, const ColliderPair& pair) 
   const Collider& a = geometry.colliders[pair.a];
   return isPinnedTo(a, bodyBOf(geometry, pair)) ||
          (!pair.againstPlane && isPinnedTo(geometry.colliders[pair.b], a.body));
+}
+
+bool areOfOneFace(const std::vector<const Contact*>& contacts) {
+  const Contact& first = *contacts[0];
+  return std::all_of(contacts.begin(), contacts.end(), [&](const Contact* contact) {
+    return contact->pair == first.pair && contact->normal.cross(first.normal).norm() < kSameNormal;
+  });
 }
 
 bool isPinnedFeature(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature) {

@@ -29,6 +29,9 @@ struct Contact {
   int movingBody() const { return bodyA != kFixed ? bodyA : bodyB; }
 };
 
+/// Whether contacts are of one pair and have one normal: points of a face that lies on another one.
+bool areOfOneFace(const std::vector<const Contact*>& contacts);
+
 /// Whether a joint holds feature number `feature` of a pair (a corner, or the sphere around an end, over a plane), so
 /// that its gap stays as it is.
 bool isPinnedFeature(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature);

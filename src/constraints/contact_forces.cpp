@@ -15,6 +15,7 @@ namespace cradle {
 namespace {
 
 constexpr int kMaxProjectionSteps = 20;  // quadratic convergence needs 1 or 2 from a step's error
+constexpr double kSameNormal = 1e-9;     // sine between normals of one face
 constexpr double kStalled = 0.5;         // a step that leaves more of an error has met rounding, or contradictions
 
 std::size_t index(int i) {
@@ -32,14 +33,14 @@ ContactSolver::ContactSolver(const std::vector<ContactConstraint>& contacts, con
                              const std::vector<RigidBody>& bodies)
     : contacts_(contacts), constraints_(constraints), bodies_(bodies), constraintSolver_(constraints, bodies) {}
 
-void ContactSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames,
+void ContactSolver::factorize(double time, const VectorX& state, const std::vector<BodyFrame>& frames,
                               const std::vector<char>& resting) {
   place(state, frames, resting);
   findBlocks(frames, true);
   for (Group& group : groups_) {
     couple(group);
-    if (group.slides) coupleFriction(group, frames);
-    group.solver.factorize(group.rows, group.slides);
+    if (group.slides) coupleFriction(group, frames, time);
+    group.solver.factorize(group.rows, group.slides, group.slides && isFace(group));
   }
   if (hasFreeConstraints_) constraintSolver_.factorize(state, frames);
 }
@@ -206,8 +207,20 @@ void ContactSolver::findDiagonal(Group& group) {
   }
 }
 
+/// Whether a group's contacts have one normal and join the same bodies: a face that lies on another one.
+bool ContactSolver::isFace(const Group& group) const {
+  const std::vector<int>& contacts = group.members.contacts;
+  const std::size_t first = index(contacts[0]);
+  return std::all_of(contacts.begin(), contacts.end(), [&](int contact) {
+    const std::size_t i = index(contact);
+    return contactJoints_[i].bodyA == contactJoints_[first].bodyA &&
+           contactJoints_[i].bodyB == contactJoints_[first].bodyB &&
+           kinematics_[i].normal.cross(kinematics_[first].normal).norm() < kSameNormal;
+  });
+}
+
 /// The matrix of a group in which contacts slide: columns differ with friction alone.
-void ContactSolver::coupleFriction(Group& group, const std::vector<BodyFrame>& frames) {
+void ContactSolver::coupleFriction(Group& group, const std::vector<BodyFrame>& frames, double time) {
   MinimumNormSolver& solver = group.solver;
   for (const int contact : group.members.contacts) {
     ActiveBlock& column = blocks_[index(contact)];
@@ -217,7 +230,7 @@ void ContactSolver::coupleFriction(Group& group, const std::vector<BodyFrame>& f
         for (int i = 0; i < group.rows; ++i) solver.coupled(i, k) = solver.symmetric(i, k);
       continue;
     }
-    addFriction(group, index(contact), frames);
+    addFriction(group, index(contact), frames, time);
     for (const int other : group.members.contacts) {
       const ActiveBlock& row = blocks_[index(other)];
       withContactRows(row.rows.block.rows, [&](auto rows) {
@@ -229,9 +242,9 @@ void ContactSolver::coupleFriction(Group& group, const std::vector<BodyFrame>& f
 }
 
 /// Joins friction to the normal force of a contact that slides.
-void ContactSolver::addFriction(Group& group, std::size_t contact, const std::vector<BodyFrame>& frames) {
+void ContactSolver::addFriction(Group& group, std::size_t contact, const std::vector<BodyFrame>& frames, double time) {
   const ContactKinematics& place = kinematics_[contact];
-  forces_[contact].slidingDirection = slidingDirection(contacts_[contact], place, frames);
+  forces_[contact].slidingDirection = slidingDirection(contacts_[contact], place, frames, time);
   const Vec3 force = -contacts_[contact].friction * forces_[contact].slidingDirection;
   Response& push = blocks_[contact].push;
   const ConstraintBlock& normal = blocks_[contact].rows.block;

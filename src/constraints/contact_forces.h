@@ -37,8 +37,10 @@ class ContactSolver {
   ContactSolver(const std::vector<ContactConstraint>& contacts, const Constraints& constraints,
                 const std::vector<RigidBody>& bodies);
 
-  /// Takes the rows in `state`, in which the bodies have `frames`, and factorises. `resting` bodies act as fixed.
-  void factorize(const VectorX& state, const std::vector<BodyFrame>& frames, const std::vector<char>& resting);
+  /// Takes the rows in `state` at `time` (s), in which the bodies have `frames`, and factorises. `resting` bodies act
+  /// as fixed.
+  void factorize(double time, const VectorX& state, const std::vector<BodyFrame>& frames,
+                 const std::vector<char>& resting);
 
   /// Adds to the accelerations in `derivative` what contacts and constraints give, and to the energy of friction what
   /// sliding takes. The accelerations of resting bodies must be zero; they stay so.
@@ -104,8 +106,8 @@ class ContactSolver {
                                                         const Response& of);
   void couple(Group& group);
   void findDiagonal(Group& group);
-  void coupleFriction(Group& group, const std::vector<BodyFrame>& frames);
-  void addFriction(Group& group, std::size_t contact, const std::vector<BodyFrame>& frames);
+  void coupleFriction(Group& group, const std::vector<BodyFrame>& frames, double time);
+  void addFriction(Group& group, std::size_t contact, const std::vector<BodyFrame>& frames, double time);
 
   template <class Constrain, class Asked>
   void solve(Group& group, const Constrain& constrain, const Asked& asked, VectorX& motion);
@@ -114,6 +116,7 @@ class ContactSolver {
 
   void constrainGroupVelocities(VectorX& state);
   void placeGaps(const VectorX& state, const std::vector<char>& resting);
+  bool isFace(const Group& group) const;
   double errorOf(const Group& group) const;
   bool isRounding(const Group& group) const;
   void displace(Group& group, VectorX& state);

@@ -192,7 +192,11 @@ ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& sta
 }
 
 void setSlidingDirection(ContactConstraint& contact, const Vec3& direction, const VectorX& state) {
-  contact.slidingDirection = inFrameOf(contact.surfaceB.body, direction, state);
+  contact.slidingDirection = inFrameOfB(contact, direction, state);
+}
+
+Vec3 inFrameOfB(const ContactConstraint& contact, const Vec3& vector, const VectorX& state) {
+  return inFrameOf(contact.surfaceB.body, vector, state);
 }
 
 ContactKinematics kinematicsOf(const ContactConstraint& contact, const VectorX& state,
@@ -226,9 +230,22 @@ Vec3 tangentialVelocity(const ContactKinematics& place) {
 
 // Mirrored rather than reversed: a velocity that turns to the other side with a part across lets the direction follow
 // without a jump.
+void endKeptDirection(ContactConstraint& contact, double time) {
+  contact.slidingDirection = givenDirection(contact, Mat3::Identity(), time);
+  contact.keepsDirection = false;
+}
+
+Vec3 givenDirection(const ContactConstraint& contact, const Mat3& worldFromB, double time) {
+  if (!contact.keepsDirection) return worldFromB * contact.slidingDirection;
+  const Vec3 direction = contact.slidingDirection + (time - contact.directionTime) * contact.directionRate;
+  return worldFromB * direction.normalized();
+}
+
 Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics& place,
-                      const std::vector<BodyFrame>& frames) {
-  const Vec3 given = turned(contact.surfaceB.body, contact.slidingDirection, frames);
+                      const std::vector<BodyFrame>& frames, double time) {
+  const int body = contact.surfaceB.body;
+  const Vec3 given = givenDirection(
+      contact, body == kFixed ? Mat3(Mat3::Identity()) : frames[static_cast<std::size_t>(body)].rotation, time);
   if (contact.keepsDirection) return (given - given.dot(place.normal) * place.normal).normalized();
   const Vec3 velocity = tangentialVelocity(place);
   const double slow = contact.slowSliding, fast = kFastSliding * slow;

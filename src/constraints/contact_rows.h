@@ -37,7 +37,11 @@ struct ContactConstraint {
   // step goes past the instant where the sliding ends: the right-hand side is smooth there.
   Vec3 slidingDirection = Vec3::Zero();
   double slowSliding = kSlowestSliding;  // m/s: slower sliding has that direction
-  bool keepsDirection = false;           // friction is against slidingDirection, whatever the velocity
+  // Friction is against slidingDirection, whatever the velocity: against that of `directionTime` (s), which turns at a
+  // steady rate (1/s, same frame).
+  bool keepsDirection = false;
+  double directionTime = 0;
+  Vec3 directionRate = Vec3::Zero();
 };
 
 /// A contact as collision detection finds it, with the radii of the spheres that its surfaces are there, or those
@@ -58,6 +62,9 @@ ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& sta
 
 /// Sets the way A slides from a direction in the world.
 void setSlidingDirection(ContactConstraint& contact, const Vec3& direction, const VectorX& state);
+
+/// A vector in the frame of a contact's B, or the world's if that is fixed, from one in the world.
+Vec3 inFrameOfB(const ContactConstraint& contact, const Vec3& vector, const VectorX& state);
 
 /// How the surfaces of a contact are placed and move, in the world's frame. They touch at `point`, the place of A's
 /// sphere or line, or of its disc's rim, nearest to B.
@@ -80,9 +87,15 @@ Vec3 tangentialVelocity(const ContactKinematics& place);
 
 /// Unit direction in which A slides: that of the tangential velocity v, mirrored to the side of the constraint's
 /// slidingDirection; below slowSliding it goes over into the latter, which a contact that keeps its direction has at
-/// any speed. Friction on A is against it.
+/// any speed, as it has turned until `time` (s). Friction on A is against it.
 Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics& place,
-                      const std::vector<BodyFrame>& frames);
+                      const std::vector<BodyFrame>& frames, double time);
+
+/// Lets a contact that keeps its direction follow its velocity from `time` (s) on.
+void endKeptDirection(ContactConstraint& contact, double time);
+
+/// The direction that the constraint has by itself at a time: unit, world, but for a part along the normal.
+Vec3 givenDirection(const ContactConstraint& contact, const Mat3& worldFromB, double time);
 
 /// Fills in the row of the gap, whose multiplier is the normal force (N), as the last one of the block. Before it, if
 /// `withTangents`, stand two of the tangential velocity along orthogonal unit directions, which may be others in the

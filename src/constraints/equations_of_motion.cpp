@@ -65,7 +65,7 @@ void EquationsOfMotion::evaluateAt(double time, const VectorX& state, VectorX& d
   accelerate(mechanism_.driven, time, derivative);
   if (!mechanism_.springs.empty()) applySprings(state, derivative);
   if (!mechanism_.pushes.empty()) applyPushes(state, derivative);
-  applyConstraints(state, derivative);
+  applyConstraints(time, state, derivative);
   holdResting(state, derivative);
   if (mechanism_.driven.empty()) return;
   addPowerOfConstraints(state, derivative);
@@ -78,16 +78,16 @@ void EquationsOfMotion::evaluateWithoutContacts(double time, const VectorX& stat
   isWithoutContacts_ = false;
 }
 
-void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& derivative) {
+void EquationsOfMotion::applyConstraints(double time, const VectorX& state, VectorX& derivative) {
   if (hasContacts()) holdResting(state, derivative);
-  factorize(state);
+  factorize(time, state);
   if (!mechanism_.motors.empty()) applyMotors(state, derivative);
   constrain(derivative);
 }
 
-void EquationsOfMotion::factorize(const VectorX& state) {
+void EquationsOfMotion::factorize(double time, const VectorX& state) {
   if (hasContacts())
-    contactSolver_.factorize(state, frames_, resting_);
+    contactSolver_.factorize(time, state, frames_, resting_);
   else if (solver_.hasConstraints())
     solver_.factorize(state, frames_);
 }
@@ -259,7 +259,7 @@ void EquationsOfMotion::keepTargets(VectorX& state) {
     if (isAtRest(row.bodyB)) row.bodyB = kFixed, row.turnsB = false;
   }
   if (rows.empty()) return;
-  factorize(state);
+  factorize(0, state);  // friction of sliding, which alone asks for a time, answers to no velocity
   const Eigen::Index count = std::ssize(rows);
   MatrixX responses(state.size(), count), perImpulse(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {

@@ -99,8 +99,8 @@ class EquationsOfMotion {
   void applySprings(const VectorX& state, VectorX& derivative) const;
   void applyPushes(const VectorX& state, VectorX& derivative) const;
   bool hasContacts() const { return !isWithoutContacts_ && !mechanism_.contacts.empty(); }
-  void applyConstraints(const VectorX& state, VectorX& derivative);
-  void factorize(const VectorX& state);
+  void applyConstraints(double time, const VectorX& state, VectorX& derivative);
+  void factorize(double time, const VectorX& state);
   void constrain(VectorX& derivative);
   void applyMotors(const VectorX& state, VectorX& derivative);
   bool isStopped(const JointMotor& motor) const;

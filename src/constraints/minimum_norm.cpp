@@ -47,8 +47,9 @@ void MinimumNormSolver::resize(int size) {
   pivots_.assign(rows, 0);
 }
 
-void MinimumNormSolver::factorize(int size, bool isCoupled) {
+void MinimumNormSolver::factorize(int size, bool isCoupled, bool sharesLoads) {
   size_ = size;
+  sharesLoads_ = sharesLoads;
   isCoupled_ = isCoupled;
   findLower();
   if (rank_ < size_) orthogonalize(lower_, lowerFactor_);
@@ -118,7 +119,16 @@ void MinimumNormSolver::findUpper() {
     for (int j = 0; j < k; ++j) subtract(lower_[at(pivot, j)], &upper_[at(0, j)], column, size_);
     const double scale = inverseBegin_[static_cast<std::size_t>(k)];
     for (int i = 0; i < size_; ++i) column[i] *= scale;
+    if (sharesLoads_ && rank_ < size_) projectOnSpan(column);
   }
+}
+
+/// Takes out of a column what does not lie in the span of the columns of L.
+void MinimumNormSolver::projectOnSpan(double* column) {
+  double* parts = reduced_.data();
+  for (int k = 0; k < rank_; ++k) parts[k] = dot(&lowerFactor_.q[at(0, k)], column, size_);
+  for (int i = 0; i < size_; ++i) column[i] = 0;
+  for (int k = 0; k < rank_; ++k) subtract(-parts[k], &lowerFactor_.q[at(0, k)], column, size_);
 }
 
 /// A column of which nothing is left gets the inverse length 0, on the diagonal of R, and so no part in solutions.

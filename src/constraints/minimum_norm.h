@@ -23,8 +23,9 @@ class MinimumNormSolver {
   /// S + C; read if factorize is told so.
   double& coupled(int row, int column) { return coupled_[at(row, column)]; }
 
-  /// Factorises the leading `size` rows and columns.
-  void factorize(int size, bool isCoupled);
+  /// Factorises the leading `size` rows and columns. With `sharesLoads` the x that lies in the span of S is taken in
+  /// place of the shortest: that of rows that give way in proportion to it.
+  void factorize(int size, bool isCoupled, bool sharesLoads = false);
 
   /// What it was told last.
   bool isCoupled() const { return isCoupled_; }
@@ -46,6 +47,7 @@ class MinimumNormSolver {
   void findLower();
   int nextPivot() const;
   void findUpper();
+  void projectOnSpan(double* column);
   void orthogonalize(const std::vector<double>& columns, Orthogonal& factor) const;
   void solveOnce(double* x);
   void reduce(const double* b);
@@ -53,7 +55,7 @@ class MinimumNormSolver {
   void substituteBack(double* x);
 
   int capacity_ = 0, size_ = 0, rank_ = 0;
-  bool isCoupled_ = false, isWellConditioned_ = true;
+  bool isCoupled_ = false, sharesLoads_ = false, isWellConditioned_ = true;
   std::vector<double> symmetric_, coupled_, whole_;
   std::vector<double> lower_;         // L of S = L L^T, size x rank
   std::vector<double> upper_;         // K^T of S + C = L K

@@ -43,12 +43,18 @@ constexpr int kMaxTrials = 8;
 // Of the proximal point method: each leaves a billionth of the error (kNormalShiftRatio), or of one in a stiff
 // direction.
 constexpr int kProximalSteps = 3;
+// By which redundant contacts give way, of the inverse mass of the heaviest: above what singular equations have of the
+// largest pivot (kSingularPivotRatio).
+constexpr double kCompliance = 1e-5;
+// Along the surfaces, of the same: what friction hardly holds would creep for long before it slides.
+constexpr double kTangentialRatio = 1e-4;
+constexpr int kMaxProximalSteps = 5;  // three or four are usual
 
 /// A search for a solution, in the operator's scaled units; residuals and tolerances are in m/s.
 class Search {
  public:
   Search(const DelassusOperator& op, const VectorX& free, const std::vector<double>& frictions, double tolerance,
-         std::vector<Eigen::Vector2d> directions = {});
+         std::vector<Eigen::Vector2d> directions = {}, bool isRegular = false);
 
   /// From `start`, which is moved to where it ends.
   ContactSolution run(WarmStart& start);
@@ -76,6 +82,7 @@ class Search {
   const DelassusOperator& op_;
   ScaledContacts contacts_;
   std::vector<Eigen::Vector2d> directions_;  // of contacts that slide already, zero of others; empty if none does
+  bool isRegular_;                           // there is one solution: Newton's method finds it to rounding
   SearchTolerances tolerances_;
   AdmmIterate iterate_;
   VectorX impulses_, velocities_;    // of the smallest residual so far
@@ -84,10 +91,11 @@ class Search {
 };
 
 Search::Search(const DelassusOperator& op, const VectorX& free, const std::vector<double>& frictions, double tolerance,
-               std::vector<Eigen::Vector2d> directions)
+               std::vector<Eigen::Vector2d> directions, bool isRegular)
     : op_(op),
       contacts_{free, frictions},
       directions_(std::move(directions)),
+      isRegular_(isRegular),
       tolerances_(free.cwiseAbs().maxCoeff(), tolerance) {
   for (Index i = 0; i < op.scales.size(); ++i) contacts_.free.segment<3>(3 * i) *= op.scales[i];
 }
@@ -124,8 +132,9 @@ bool Search::stepByNewton(Step kind, VectorX& z, VectorX& u) const {
     ContactEquation& equation = equations[static_cast<std::size_t>(i)];
     if (equation.isOpen) continue;
     const Vec3 impulse = z.segment<3>(3 * i), velocity = u.segment<3>(3 * i);
-    const NewtonRow row = slides(i) ? slidingRow(impulse, velocity, friction(i), direction(i), kNewtonShift)
-                                    : newtonRow(impulse, velocity, friction(i), kNewtonShift);
+    const double shift = isRegular_ ? 0 : kNewtonShift;
+    const NewtonRow row = slides(i) ? slidingRow(impulse, velocity, friction(i), direction(i), shift)
+                                    : newtonRow(impulse, velocity, friction(i), shift);
     equation = row.equation;
     sides.segment<3>(3 * i) = -row.value;
   }
@@ -165,7 +174,7 @@ bool Search::polish(double tolerance, VectorX& impulses, VectorX& velocities) co
   const VectorX z = impulses, u = velocities;
   bool isUnique = true;
   if (!converge(Step::any, tolerance, impulses, velocities, isUnique)) return false;
-  if (isUnique || !op_.factorizeForLeast) return true;
+  if (isUnique || isRegular_ || !op_.factorizeForLeast) return true;
   VectorX leastZ = z, leastU = u;
   if (converge(Step::least, tolerance, leastZ, leastU, isUnique) && residual(leastZ, leastU) <= rounding(leastZ))
     impulses = leastZ, velocities = leastU;
@@ -177,7 +186,8 @@ bool Search::polish(double tolerance, VectorX& impulses, VectorX& velocities) co
 bool Search::accept(double tolerance) {
   VectorX z = iterate_.impulses, u = velocitiesOf(z);
   double left = residual(z, u);
-  const bool isFound = left <= tolerance || isSolved(left, z) || polish(tolerance, z, u);
+  const bool isNear = left <= tolerance || isSolved(left, z);
+  const bool isFound = (isNear && !isRegular_) || polish(tolerance, z, u) || isNear;
   if (isFound) left = residual(z, u);
   if (left < leastResidual_) impulses_ = z, velocities_ = u, leastResidual_ = left;
   return isFound;
@@ -234,7 +244,7 @@ bool Search::find() {
   if (isOpen()) return true;
   // From impulses of zero, Newton's method would share the loads of redundant contacts in an arbitrary way.
   const bool isWarm = iterate_.impulses.cwiseAbs().maxCoeff() > 0;
-  if ((isWarm || !tolerances_.isRounding) && accept(tolerances_.solved)) return true;
+  if ((isWarm || isRegular_ || !tolerances_.isRounding) && accept(tolerances_.solved)) return true;
   if (!directions_.empty()) return false;
   int round = kFirstAdmmIterations;
   for (int trial = 0; trial < kMaxTrials; ++trial) {
@@ -277,6 +287,51 @@ bool isRegular(const MatrixX& matrix) {
   if (factor.info() != Eigen::Success) return false;
   const auto left = factor.matrixLLT().diagonal().cwiseAbs2();
   return (left.array() > kNormalShiftRatio * matrix.diagonal().array()).all();
+}
+
+/// The problem of redundant contacts: of its many solutions the one of contacts that give way equally, by a compliance
+/// that vanishes. So loads are shared in the way that rows of active contacts do (MinimumNormSolver), and what sticks
+/// slides only where no forces can hold it. By the proximal point method (R. T. Rockafellar, "Monotone operators and
+/// the proximal point algorithm", 1976), from impulses of zero: what the first problem, of contacts that do give way,
+/// leaves of a solution is the compliance's part of it, and each further one leaves that part of what is left.
+ContactSolution solveRedundant(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
+                               const std::vector<Eigen::Vector2d>& directions, const VectorX& near) {
+  const VectorX scales = scalesOf(G);
+  const double largest = 1 / (scales.minCoeff() * scales.minCoeff());
+  const double smallest = 1 / (scales.maxCoeff() * scales.maxCoeff());
+  const double normal = kCompliance * std::max(smallest, kCompliance * largest);  // 1/kg
+  const Vec3 ofOne(kTangentialRatio * normal, kTangentialRatio * normal, normal);
+  const VectorX compliance = ofOne.replicate(scales.size(), 1);
+  MatrixX yielding = G;
+  yielding.diagonal() += compliance;
+  const DelassusOperator op = operatorOf(yielding);
+  const double rounding = kProductRounding * g.cwiseAbs().maxCoeff();
+  const auto normals = Eigen::seq(2, Eigen::last, 3);
+  ContactSolution solution;
+  VectorX unloaded = VectorX::Zero(g.size());  // impulses to which contacts have given way; < 0: they are as far apart
+  WarmStart start{near.size() > 0 ? near : unloaded, unloaded, 0};
+  double left = INFINITY;  // m/s: by which contacts give way
+  long iterations = 0;
+  for (int step = 0; step < kMaxProximalSteps && left > rounding; ++step) {
+    solution = Search(op, g - compliance.cwiseProduct(unloaded), frictions, 0, directions, true).run(start);
+    iterations += solution.iterations;
+    if (!solution.converged) return solution;
+    const VectorX velocities = G * solution.impulses + g;
+    VectorX given = solution.impulses;
+    given(normals) = unloaded(normals) - velocities(normals).cwiseQuotient(compliance(normals));
+    left = 0;
+    for (Index i = 0; i < g.size(); ++i)
+      if (solution.impulses[3 * (i / 3) + 2] > 0)
+        left = std::max(left, compliance[i] * std::abs(given[i] - unloaded[i]));
+    unloaded = given;
+  }
+  if (left > rounding) {  // friction is at its limit nearly everywhere
+    solution = Search(operatorOf(G), g, frictions, 0, directions).run(start);
+    solution.converged = solution.converged && solution.iterations == 0;
+  }
+  solution.velocities = G * solution.impulses + g;
+  solution.iterations += iterations;
+  return solution;
 }
 
 /// The problem without friction: the normal components alone, by pivoting. Loads of redundant contacts are shared as
@@ -352,6 +407,17 @@ ContactSolution solveSlidingContact(const MatrixX& G, const VectorX& g, const st
                                     const std::vector<Eigen::Vector2d>& directions, const VectorX& near) {
   WarmStart start{near, VectorX::Zero(g.size()), 0};
   return Search(operatorOf(G), g, frictions, 0, directions).run(start);
+}
+
+ContactSolution solveSharedContact(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
+                                   const std::vector<Eigen::Vector2d>& directions, const VectorX& near) {
+  const auto isZero = [](double friction) { return friction == 0; };
+  if (!std::all_of(frictions.begin(), frictions.end(), isZero) && !isRegular(G)) {
+    ContactSolution shared = solveRedundant(G, g, frictions, directions, near);
+    if (shared.converged) return shared;
+  }
+  return directions.empty() ? solveFrictionalContact(G, g, frictions, near)
+                            : solveSlidingContact(G, g, frictions, directions, near);
 }
 
 }  // namespace cradle

@@ -43,6 +43,12 @@ ContactSolution solveFrictionalContact(const MatrixX& G, const VectorX& g, const
 ContactSolution solveSlidingContact(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
                                     const std::vector<Eigen::Vector2d>& directions, const VectorX& near);
 
+/// One of both, the former without `directions`, for the contacts of one face, which share its load as those do that
+/// give way equally: with forces that follow loads without a jump, and stick as long as any can hold them. Where such a
+/// solution is not found, as above.
+ContactSolution solveSharedContact(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
+                                   const std::vector<Eigen::Vector2d>& directions, const VectorX& near);
+
 /// The same problem of any form of G, to a residual of `tolerance` (m/s), or of ten times that where the first methods
 /// fail; if nothing leads there, the best that was found. Leaves in `start` where it ended.
 ContactSolution solveFrictionalContact(const DelassusOperator& G, const VectorX& g,

@@ -92,19 +92,22 @@ class FrictionalImpact {
   VectorX start_;  // m/s: velocities of all contacts before the impact
   FrictionalImpactTolerances tolerances_;
   std::vector<Index> members_;         // contacts that can move
+  bool isFace_ = false;                // all of them are of one face
   std::vector<Index> rows_, normals_;  // their rows in the Delassus operator: all three, and that of the normal
 };
 
 FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactDelassus& delassus,
                                    VectorX velocities)
     : impacts_(impacts), delassus_(delassus), start_(std::move(velocities)), tolerances_(start_.cwiseAbs().maxCoeff()) {
+  std::vector<const Contact*> contacts;
   for (std::size_t i = 0; i < impacts.size(); ++i) {
     if (delassus.isImmobile(i)) continue;
     const Index contact = static_cast<Index>(i);
-    members_.push_back(contact);
+    members_.push_back(contact), contacts.push_back(&impacts[i].contact);
     for (Index axis = 0; axis < 3; ++axis) rows_.push_back(3 * contact + axis);
     normals_.push_back(rows_.back());
   }
+  isFace_ = !contacts.empty() && areOfOneFace(contacts);
 }
 
 /// m/s: the largest of any contact.
@@ -122,7 +125,8 @@ ContactSolution FrictionalImpact::solve(const MatrixX& matrix, const VectorX& fr
   const auto isUnwedgedWith = [&](double tried) {
     std::vector<double> cut = frictions;
     for (double& friction : cut) friction *= tried;
-    ContactSolution found = solveFrictionalContact(matrix, free, cut);
+    ContactSolution found =
+        isFace_ ? solveSharedContact(matrix, free, cut, {}, {}) : solveFrictionalContact(matrix, free, cut);
     const VectorX sizes = found.impulses.cwiseAbs();
     const double all = found.impulses.dot(matrix * found.impulses), each = sizes.dot(matrix.cwiseAbs() * sizes);
     const bool isUnwedged = found.residual <= tolerances_.wedged && each <= kMaxCancellation * all;

@@ -119,7 +119,7 @@ VectorX denseAccelerations(const Mechanism& mechanism, const VectorX& state) {
     findRows(contact, place, contact.motion == kSticking, block);
     for (int i = 0; i < block.rows; ++i) rows.push_back(rowOf(block, i)), answers.push_back(rows.back());
     if (contact.motion != kSliding) continue;
-    const Vec3 friction = -contact.friction * slidingDirection(contact, place, frames);
+    const Vec3 friction = -contact.friction * slidingDirection(contact, place, frames, 0);
     ConstraintRow& answer = answers.back();
     answer.linearA += friction, answer.angularA += place.armA.cross(friction);
     answer.linearB -= friction, answer.angularB -= place.armB.cross(friction);

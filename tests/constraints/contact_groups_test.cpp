@@ -14,7 +14,9 @@ using testing::ElementsAre;
 // Bodies 0-1-2 and 4 touch the ground or each other, 2-3 are tied, 5-6 are tied without a contact. A fixed body joins
 // nothing, and a contact of two fixed bodies is in no group.
 TEST(ContactGroups, AreOfBodiesThatContactsAndConstraintsJoin) {
-  const auto touch = [](int a, int b) { return sphereOnSphere({a, {}}, 0.1, {b, {}}, 0.1, kFrictionless); };
+  const auto touch = [](int a, int b) {
+    return sphereOnSphere({a, Vec3::Zero()}, 0.1, {b, Vec3::Zero()}, 0.1, kFrictionless);
+  };
   const auto rod = [](int a, int b) { return Constraint{{a, Vec3::Zero()}, {b, Vec3::Zero()}, RodConstraint{1}}; };
   const std::vector<ContactConstraint> contacts = {touch(4, kFixed), touch(1, 2), touch(0, 1)};
   const Constraints constraints = {rod(5, 6), rod(3, 2)};

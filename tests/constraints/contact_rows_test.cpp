@@ -245,9 +245,10 @@ TEST(SlidingDirection, IsThatOfTheVelocityAboveAHundredMicrometresASecond) {
   VectorX state = restingState(1);
   std::vector<BodyFrame> frames;
   findBodyFrames(mechanism.bodies, state, frames);
+  double time = 0;
   const auto direction = [&](const Vec3& velocity) {
     linearVelocity(state, 0) = velocity;
-    return slidingDirection(mechanism.contacts[0], kinematicsOf(mechanism.contacts[0], state, frames), frames);
+    return slidingDirection(mechanism.contacts[0], kinematicsOf(mechanism.contacts[0], state, frames), frames, time);
   };
   EXPECT_LT((direction(Vec3(6e-5, 0, 8e-5)) - Vec3(0.6, 0, 0.8)).norm(), 1e-15);
   EXPECT_LT((direction(Vec3(3, 0, 4)) - Vec3(0.6, 0, 0.8)).norm(), 1e-15);
@@ -259,6 +260,10 @@ TEST(SlidingDirection, IsThatOfTheVelocityAboveAHundredMicrometresASecond) {
   // A contact that keeps its direction has it at any speed.
   mechanism.contacts[0].keepsDirection = true;
   EXPECT_EQ(direction(Vec3(3, 0, 4)), Vec3::UnitX());
+  // It turns: after 0.5 s at 1.5 rad/s to the side, its tangent is 3/4.
+  mechanism.contacts[0].directionTime = 2, mechanism.contacts[0].directionRate = Vec3(0, 0, 1.5);
+  time = 2.5;
+  EXPECT_LT((direction(Vec3(3, 0, 4)) - Vec3(0.8, 0, 0.6)).norm(), 1e-15);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ Problem problemOf(Random& random, int size, int rank, double coupling) {
   return {rows * rows.transpose(), rows * response};
 }
 
-VectorX solved(const Problem& problem, bool isCoupled, const VectorX& rightHandSide) {
+VectorX solved(const Problem& problem, bool isCoupled, const VectorX& rightHandSide, bool sharesLoads = false) {
   const int size = static_cast<int>(rightHandSide.size());
   MinimumNormSolver solver;
   solver.resize(size);
@@ -37,7 +37,7 @@ VectorX solved(const Problem& problem, bool isCoupled, const VectorX& rightHandS
       solver.coupled(row, column) = problem.coupled(row, column);
     }
   }
-  solver.factorize(size, isCoupled);
+  solver.factorize(size, isCoupled, sharesLoads);
   VectorX x = rightHandSide;
   solver.solve(x.data());
   return x;
@@ -58,6 +58,22 @@ TEST(MinimumNorm, AgreesWithACompleteOrthogonalDecomposition) {
         const VectorX expected = oracle.solve(rightHandSide), got = solved(problem, coupling > 0, rightHandSide);
         EXPECT_LT((got - expected).norm(), 1e-8 * (1 + expected.norm())) << size << " " << rank << " " << coupling;
       }
+}
+
+// Of all solutions x, the one in the span of S: x = S w, with (S + C) S w as near to b as can be.
+TEST(MinimumNorm, SharesLoadsInTheSpanOfItsRows) {
+  Random random;
+  for (int size = 2; size <= 8; ++size)
+    for (int rank = 1; rank < size; ++rank) {
+      const Problem problem = problemOf(random, size, rank, 0.4);
+      const VectorX rightHandSide = randomMatrix(random, size, 1);
+      Eigen::CompleteOrthogonalDecomposition<MatrixX> oracle;
+      oracle.setThreshold(1e-9);
+      oracle.compute(problem.coupled * problem.symmetric);
+      const VectorX expected = problem.symmetric * oracle.solve(rightHandSide);
+      const VectorX got = solved(problem, true, rightHandSide, true);
+      EXPECT_LT((got - expected).norm(), 1e-7 * (1 + expected.norm())) << size << " " << rank;
+    }
 }
 
 TEST(MinimumNorm, LeavesARowWithoutAnyResponseAlone) {

@@ -203,6 +203,51 @@ Rows plankOnTwoSupports(double friction) {
   return rows;
 }
 
+// A cube of 1 kg and 1 m on its corners, pushed through its middle by F along x: corners that give way equally carry
+// (m g -+ F) / 4. It slides from F = mu m g on, with (F - mu m g) / m. Residuals are 1e-12 of the velocities.
+TEST(SharedContact, CarriesAPushAndSlidesByTheClosedForm) {
+  Rows cube = stackOf({1}, 0.4);
+  for (const double push : {0.1, 0.5, 1 - 1e-9, 1 + 1e-9, 1 + 1e-5, 1.5}) {
+    const double force = push * 0.4 * kGravity;
+    cube.velocities << force, 0, -kGravity, 0, 0, 0;
+    const ContactSolution solution = solveSharedContact(cube.matrix(), cube.free(), cube.frictions, {}, {});
+    ASSERT_TRUE(solution.converged) << push;
+    const double sliding = std::max(0.0, force - 0.4 * kGravity);
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      EXPECT_NEAR(solution.impulses[3 * i + 2], (kGravity + (i & 1 ? 1 : -1) * (force - sliding)) / 4, 1e-7) << push;
+      EXPECT_LT((solution.velocities.segment<3>(3 * i) - Vec3(sliding, 0, 0)).norm(), 1e-12) << push;
+    }
+  }
+}
+
+// The same twisted by T about the vertical through its middle: four corners on m g / 4 each hold up to mu m g r.
+TEST(SharedContact, TurnsByTheClosedForm) {
+  Rows cube = stackOf({1}, 0.4);
+  const double limit = 0.4 * kGravity * std::sqrt(0.5);
+  for (const double twist : {0.5, 1 - 1e-9, 1 + 1e-9, 1 + 1e-5, 2.0}) {
+    cube.velocities << 0, 0, -kGravity, 0, 0, 6 * twist * limit;
+    const ContactSolution solution = solveSharedContact(cube.matrix(), cube.free(), cube.frictions, {}, {});
+    ASSERT_TRUE(solution.converged) << twist;
+    const VectorX after = cube.velocitiesAfter(solution);
+    EXPECT_NEAR(after[5], 6 * std::max(0.0, (twist - 1) * limit), 1e-12) << twist;
+    EXPECT_LT(after.head<5>().norm(), 1e-12) << twist;
+  }
+}
+
+// A corner that would have to pull carries nothing, and goes on doing so: the others then are determined.
+TEST(SharedContact, LeavesACornerIdle) {
+  Rows cube = stackOf({1}, 0.8);
+  cube.velocities << 0.6 * kGravity, 0.5 * kGravity, -kGravity, 0, 0, 0;
+  const ContactSolution solution = solveSharedContact(cube.matrix(), cube.free(), cube.frictions, {}, {});
+  ASSERT_TRUE(solution.converged);
+  // About the middle: N3 - N1 + ... = 0.6 m g along x, 0.5 m g along y, m g in all, with corner 0 idle.
+  const double expected[] = {0, 0.25, 0.2, 0.55};
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    EXPECT_NEAR(solution.impulses[3 * i + 2], expected[i] * kGravity, 1e-7) << i;
+    EXPECT_LT(solution.velocities.segment<3>(3 * i).norm(), 1e-12) << i;
+  }
+}
+
 // The end slides back on the ground, and the plank forward over the edge. Rounds of friction from normal forces, and
 // these from friction, leave the mirror image; the forces that are their own image are a solution too.
 TEST(SlidingContact, WhatIsMirrorSymmetricStaysSo) {

@@ -1,5 +1,6 @@
 #include "simulate/events/active_contacts.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,14 +15,19 @@
 namespace cradle {
 namespace {
 
-constexpr int kMaxTurningSteps = 1000;  // in a row: sliding that ends does so in some hundred
+// In a row: sliding that ends does so in some hundred. A face that begins to slide without acceleration takes more, and
+// may take so many times that.
+constexpr int kMaxTurningSteps = 1000;
+constexpr double kTurningMargin = 3;
+constexpr double kMostTurningSteps = 10 * kMaxTurningSteps;  // of a face that slips at 1e-11; of others they cost more
 
 // Parts of the way to a stop at which the direction of sliding is taken, and the weights with which that of the stop is
 // extrapolated from them, by a parabola.
 constexpr std::array<double, 3> kAimParts = {0.7, 0.8, 0.9}, kAimWeights = {1, -3, 3};
-constexpr double kFastToAim = 100;  // times slowSliding, at the first of them: slower has not its own direction
-constexpr double kStopped = 1e-3;   // of the speed at the first of them: no more is left at a stop
-constexpr double kStraight = 0.1;   // sine: sliding that turns by more on its last third is too curved for a parabola
+constexpr double kFastToAim = 100;   // times slowSliding, at the first of them: slower has not its own direction
+constexpr double kStopped = 1e-3;    // of the speed at the first of them: no more is left at a stop
+constexpr double kStraight = 0.1;    // sine: sliding that turns by more on its last third is too curved for a parabola
+constexpr double kDependent = 1e-6;  // of a row, left by what others of its pair make of it: it depends on them
 constexpr double kMaxAimedSpeed = 1e-4;  // m/s: faster sliding has its own direction in any case
 
 }  // namespace
@@ -56,6 +62,12 @@ void ActiveContacts::classify(const std::vector<Contact>& touching, ConstraintSo
       classifyContacts({touching, previous_, frames_, isReleasing_, tolerances_}, constraints, island_);
   if (!found.fallback.reason.empty()) fallback_ = std::move(found.fallback);
   for (const ContactRecord& record : found.active) add(record, frames_);
+  for (const ContactRecord& record : found.idle) addIdle(record);
+  maxTurningSteps_ = kMaxTurningSteps;
+  for (const ContactRecord& record : records_)
+    if (record.isOfFace && record.keepsDirectionUntil > island_.time)
+      maxTurningSteps_ += kTurningMargin * stepsAfterKeptDirection(record, island_.time, tolerances_);
+  maxTurningSteps_ = std::min(maxTurningSteps_, kMostTurningSteps);
   recordContactEvents(previous_, records_, frames_, island_, island_.log);
   previous_.clear();
 }
@@ -69,9 +81,37 @@ void ActiveContacts::add(const ContactRecord& record, const std::vector<BodyFram
     setSlidingDirection(constraint, record.direction, island_.state);
     constraint.slowSliding = tolerances_.slowSliding;
     constraint.keepsDirection = record.keepsDirectionUntil > island_.time;
+    constraint.directionTime = island_.time, constraint.directionRate = record.directionRate;
   }
   mechanism().contacts.push_back(constraint);
   records_.push_back(record);
+}
+
+/// Finds the row of an idle contact as a sum of those of active contacts of its pair, if it depends on them.
+void ActiveContacts::addIdle(const ContactRecord& idle) {
+  const double size = smallestSize(idle.contact, island_.assembly.radii);
+  const auto rowOf = [&](const ContactRecord& record) {
+    const ContactRows rows = rowsOf(record.contact, island_.state, frames_);
+    Eigen::Matrix<double, 9, 1> row;
+    row << rows.block.linear.row(2).transpose(), rows.block.angularA.row(2).transpose() / size,
+        rows.block.angularB.row(2).transpose() / size;
+    return row;
+  };
+  std::vector<std::size_t> beside;
+  for (std::size_t i = 0; i < records_.size(); ++i)
+    if (records_[i].contact.pair == idle.contact.pair) beside.push_back(i);
+  if (beside.empty()) return;
+  MatrixX rows(9, std::ssize(beside));
+  for (std::size_t k = 0; k < beside.size(); ++k) rows.col(static_cast<Eigen::Index>(k)) = rowOf(records_[beside[k]]);
+  const VectorX wanted = rowOf(idle);
+  Eigen::CompleteOrthogonalDecomposition<MatrixX> decomposition;
+  decomposition.setThreshold(EventTolerances::kRankRatio);
+  const VectorX parts = decomposition.compute(rows).solve(wanted);
+  if ((rows * parts - wanted).norm() > kDependent * wanted.norm()) return;
+  IdleContact found;
+  for (std::size_t k = 0; k < beside.size(); ++k)
+    found.parts.emplace_back(beside[k], parts[static_cast<Eigen::Index>(k)]);
+  records_[beside[0]].idle.push_back(found);
 }
 
 void ActiveContacts::releaseResting() {
@@ -194,7 +234,8 @@ std::optional<double> ActiveContacts::followSliding() {
     isPlaced = true;
     if (contact.keepsDirection && island_.time < records_[i].keepsDirectionUntil) continue;
     contact.slowSliding = tolerances_.slowSliding;
-    const bool isFreed = std::exchange(contact.keepsDirection, false);
+    const bool isFreed = contact.keepsDirection;
+    if (isFreed) endKeptDirection(contact, island_.time);
     const Vec3 sliding = tangentialVelocity(kinematicsOf(contact, island_.state, frames_));
     const double speed = sliding.norm();
     if (speed > kSlowestSliding) setSlidingDirection(contact, sliding / speed, island_.state);
@@ -206,7 +247,7 @@ std::optional<double> ActiveContacts::followSliding() {
     if (isDirectionTurnedFast(records_[i], speed, normal)) fast = &records_[i];
   }
   turningSteps_ = fast ? turningSteps_ + 1 : 0;
-  if (turningSteps_ > kMaxTurningSteps) fallback_ = fallbackAt(kSlidesTooSlowly, {&fast->contact}, island_.assembly);
+  if (turningSteps_ > maxTurningSteps_) fallback_ = fallbackAt(kSlidesTooSlowly, {&fast->contact}, island_.assembly);
   if (turningTime) changes_.forget();
   return turningTime;
 }

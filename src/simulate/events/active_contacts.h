@@ -83,6 +83,7 @@ class ActiveContacts {
  private:
   Mechanism& mechanism() const { return island_.assembly.mechanism; }
   void add(const ContactRecord& record, const std::vector<BodyFrame>& frames);
+  void addIdle(const ContactRecord& idle);
   std::vector<Vec3> slidingVelocitiesAt(double fraction);
 
   IslandState& island_;
@@ -96,6 +97,7 @@ class ActiveContacts {
   ContactFallback fallback_;
   bool isReleasing_ = false;
   int turningSteps_ = 0;  // in a row, in which friction turned the direction of some sliding
+  double maxTurningSteps_ = 0;
 };
 
 }  // namespace cradle

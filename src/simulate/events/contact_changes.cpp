@@ -34,7 +34,8 @@ constexpr double kLeavingUnit = 1e3 * EventTolerances::kEventFunction;
 
 constexpr double kJustFlat = 1 - 1e-6;  // a disc that lies down ends a little flatter than a row may follow
 
-constexpr std::array<Kind, 5> kKinds = {Kind::release, Kind::slip, Kind::stick, Kind::leave, Kind::redundant};
+constexpr std::array<Kind, 6> kKinds = {Kind::release, Kind::slip, Kind::stick,
+                                        Kind::leave,   Kind::load, Kind::redundant};
 // Of the event functions: what is left of the friction of a whole pair, and of the agreement of rows.
 constexpr std::size_t kOfPair = kKinds.size(), kOfRows = kOfPair + 1;
 
@@ -45,12 +46,13 @@ constexpr int kMaxDipTrials = 3;  // at the least of the parabola, and of those 
 
 }  // namespace
 
-/// The direction of A's sliding that its row has; unit, world.
-Vec3 ContactChanges::slidingDirectionAt(std::size_t contact, const VectorX& state) const {
+/// The direction of A's sliding that its row has by itself; unit, world.
+Vec3 ContactChanges::slidingDirectionAt(std::size_t contact, double time, const VectorX& state) const {
   const ContactConstraint& constraint = mechanism().contacts[contact];
   const int body = constraint.surfaceB.body;
-  if (body == kFixed) return constraint.slidingDirection;
-  return orientation(state, body).normalized() * constraint.slidingDirection;
+  const Mat3 worldFromB =
+      body == kFixed ? Mat3(Mat3::Identity()) : orientation(state, body).normalized().toRotationMatrix();
+  return givenDirection(constraint, worldFromB, time);
 }
 
 /// The axis about which a disc on its rim is tilted, as long as the sine of the angle. Needs frames_ of the state.
@@ -128,6 +130,16 @@ double ContactChanges::slidingNormalForce(std::size_t contact, const std::vector
   return sum;
 }
 
+/// Whether a contact is of a face that slides with friction.
+bool ContactChanges::slidesAsFace(std::size_t contact, const std::vector<ContactRecord>& records) const {
+  if (!records[contact].isOfFace) return false;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    if (records[i].contact.pair == records[contact].contact.pair &&
+        mechanism().contacts[i].motion == ContactMotion::sliding)
+      return true;
+  return false;
+}
+
 /// Of the friction that holds the pair of a contact, as evaluated last, what is left, over the force.
 double ContactChanges::stickingLeft(std::size_t contact, const std::vector<ContactRecord>& records) const {
   double limit = 0;
@@ -147,15 +159,26 @@ double ContactChanges::agreementOf(std::size_t contact) const {
   return force.left > most ? most / force.left - 1 : INFINITY;
 }
 
+/// How far the idle contacts of an active one are from carrying load, over its force.
+double ContactChanges::idleLeft(std::size_t contact, const std::vector<ContactRecord>& records) const {
+  double least = INFINITY;
+  for (const IdleContact& idle : records[contact].idle) {
+    double force = 0;  // N, that it would carry
+    for (const auto& [other, part] : idle.parts) force += part * island_.equations.contactForces()[other].normal;
+    least = std::min(least, EventTolerances::kLoadedRatio - force / records[contact].force);
+  }
+  return least;
+}
+
 void ContactChanges::evaluate(const std::vector<ContactRecord>& records, double fraction, const VectorX& state,
                               std::vector<EventFunctions>& values) {
   island_.equations.evaluate(timeAt(fraction), state, derivative_);
-  takeEvaluated(records, state, values);
+  takeEvaluated(records, timeAt(fraction), state, values);
 }
 
 /// Event functions of each contact at `state`, for which the equations were evaluated last; infinite where there is
 /// nothing to change.
-void ContactChanges::takeEvaluated(const std::vector<ContactRecord>& records, const VectorX& state,
+void ContactChanges::takeEvaluated(const std::vector<ContactRecord>& records, double time, const VectorX& state,
                                    std::vector<EventFunctions>& values) {
   findBodyFrames(mechanism().bodies, state, frames_);
   const std::vector<ContactForce>& forces = island_.equations.contactForces();
@@ -163,15 +186,18 @@ void ContactChanges::takeEvaluated(const std::vector<ContactRecord>& records, co
   for (std::size_t i = 0; i < records.size(); ++i) {
     const ContactMotion motion = mechanism().contacts[i].motion;
     const double limit = records[i].pair.material.staticFriction * forces[i].normal;
-    values[i] = {forces[i].normal / records[i].force, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
+    values[i].fill(INFINITY);
+    values[i][0] = forces[i].normal / records[i].force;
     if (!sphereOverMesh(island_.assembly.geometry, records[i].pair, state).mesh)
       values[i][3] = kLeavingUnit * std::max(-1.0, 1 - distanceFromNearest(i, records[i], state) / tolerances_.leaving);
     if (motion == ContactMotion::sticking) values[i][1] = (limit - forces[i].tangential.norm()) / records[i].force;
     if (records[i].isRedundant) values[i][kOfRows] = agreementOf(i);
     if (motion == ContactMotion::sticking && records[i].isRedundant) values[i][kOfPair] = stickingLeft(i, records);
-    if (motion == ContactMotion::sliding) values[i][2] = forces[i].tangentialVelocity.dot(slidingDirectionAt(i, state));
+    if (motion == ContactMotion::sliding)
+      values[i][2] = forces[i].tangentialVelocity.dot(slidingDirectionAt(i, time, state));
     if (motion == ContactMotion::sliding && records[i].isRedundant)
-      values[i][4] = slidingNormalForce(i, records) / records[i].force;
+      values[i][5] = slidingNormalForce(i, records) / records[i].force;
+    values[i][4] = idleLeft(i, records);
   }
 }
 
@@ -186,7 +212,7 @@ double ContactChanges::margin(const ContactChange& change, const std::vector<Con
 }
 
 void ContactChanges::noteEnd(const std::vector<ContactRecord>& records) {
-  if (!records.empty()) takeEvaluated(records, island_.step.state, atEnd_);
+  if (!records.empty()) takeEvaluated(records, timeAt(1), island_.step.state, atEnd_);
 }
 
 std::optional<ContactChange> ContactChanges::first(const std::vector<ContactRecord>& records) {
@@ -267,8 +293,9 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
       if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
       // What starts to slide may still go the other way, as slowly as tells no direction, and is turned.
       if (kKinds[kind] == Kind::stick && before_[i][kind] < 0 && marginEnd > before_[i][kind]) continue;
-      const bool isOfForces = kKinds[kind] == Kind::release || kKinds[kind] == Kind::slip;
-      if (records[i].isRedundant && isOfForces) {
+      // Friction of sliding shares the loads of redundant contacts as rows do: none may pull.
+      const bool isRelease = kKinds[kind] == Kind::release && !slidesAsFace(i, records);
+      if (records[i].isRedundant && (isRelease || kKinds[kind] == Kind::slip)) {
         isInDoubt_[i] = 1;
         continue;
       }
@@ -292,6 +319,19 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
 /// The fraction of the step between two points at which an event function falls to zero, on the interpolant (Illinois).
 double ContactChanges::locate(const ContactChange& change, const std::vector<ContactRecord>& records, double from,
                               double marginFrom, double to, double marginTo) {
+  // What starts at zero, and grows at first, does not end there: the start is moved to where it has grown.
+  for (double cut = to;
+       !(marginFrom > EventTolerances::kEventFunction) && cut - from > EventTolerances::kChangeInstant;) {
+    cut = from + (cut - from) / 2;
+    interpolate(island_.step, cut, sample_);
+    const double found = margin(change, records, cut, sample_);
+    if (found > EventTolerances::kEventFunction)
+      from = cut, marginFrom = found;
+    else if (found < -EventTolerances::kEventFunction)
+      to = cut, marginTo = found;
+    else
+      break;
+  }
   double weightFrom = std::max(marginFrom, EventTolerances::kEventFunction), weightTo = marginTo;
   for (int i = 0; i < kMaxBorderCuts && to - from > EventTolerances::kChangeInstant; ++i) {
     const double cut = to - (to - from) * weightTo / (weightTo - weightFrom);
@@ -308,13 +348,14 @@ double ContactChanges::locate(const ContactChange& change, const std::vector<Con
 
 /// Rows of active contacts at `state`, in which those that slide do so in the directions of `sliding`.
 ContactChanges::GroupRows ContactChanges::rowsOfGroup(const std::vector<int>& contacts,
-                                                      std::vector<ContactRecord>& sliding, const VectorX& state) const {
+                                                      std::vector<ContactRecord>& sliding, double time,
+                                                      const VectorX& state) const {
   GroupRows group;
   for (const int i : contacts) {
     const std::size_t contact = static_cast<std::size_t>(i);
     const ContactRows rows = rowsOf(mechanism().contacts[contact], state, frames_);
     if (rows.constraint.motion == ContactMotion::sliding)
-      sliding[contact].direction = slidingDirection(rows.constraint, rows.place, frames_);
+      sliding[contact].direction = slidingDirection(rows.constraint, rows.place, frames_, time);
     group.rows.push_back(rows);
     group.records.push_back(&sliding[contact]);
   }
@@ -339,7 +380,7 @@ double ContactChanges::infeasibility(const std::vector<ContactRecord>& records, 
   std::vector<ContactRecord> sliding = records;  // with the directions of sliding at `state`
   double left = 0, largest = mechanism().gravity.norm();
   for (const ContactGroup& group : findContactGroups(mechanism().contacts, mechanism().constraints, joinsNothing)) {
-    const GroupRows members = rowsOfGroup(group.contacts, sliding, state);
+    const GroupRows members = rowsOfGroup(group.contacts, sliding, timeAt(fraction), state);
     const DenseDelassus delassus(blocksOf(members.rows), mechanism().bodies, frames_, &constraints);
     largest = std::max(largest, delassus.accelerations(derivative_).cwiseAbs().maxCoeff());
     const auto isInDoubt = [this](int contact) { return isInDoubt_[static_cast<std::size_t>(contact)] != 0; };

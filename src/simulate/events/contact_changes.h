@@ -20,6 +20,7 @@ struct ContactChange {
     stick,    // sliding stops
     leave,    // loss of contact: the contact comes to the border of its face or edge, or off its corner, or a disc lies
               // down
+    load,     // an idle contact would carry load
     redundant  // statically indeterminate with others: no forces within the friction cones keep them any more, or those
                // that the rows have would pull where it slides, so that friction would drive it
   };
@@ -63,10 +64,10 @@ class ContactChanges {
   /// Of a contact, in the order of the kinds.
   /// Behind them, for contacts that are redundant, of which single forces tell nothing: what is left of the friction of
   /// its whole pair, if it sticks; and how far rows are from contradicting each other.
-  using EventFunctions = std::array<double, 7>;
+  using EventFunctions = std::array<double, 8>;
 
   Mechanism& mechanism() const { return island_.assembly.mechanism; }
-  Vec3 slidingDirectionAt(std::size_t contact, const VectorX& state) const;
+  Vec3 slidingDirectionAt(std::size_t contact, double time, const VectorX& state) const;
   double distanceFromNearest(std::size_t contact, const ContactRecord& record, const VectorX& state) const;
   Vec3 tiltOf(const ContactConstraint& rim, const VectorX& state) const;
   double flatnessOf(const ContactConstraint& rim, const VectorX& state) const;
@@ -75,9 +76,11 @@ class ContactChanges {
   double timeAt(double fraction) const { return island_.step.time + fraction * island_.step.timeStep; }
   void evaluate(const std::vector<ContactRecord>& records, double fraction, const VectorX& state,
                 std::vector<EventFunctions>& values);
-  void takeEvaluated(const std::vector<ContactRecord>& records, const VectorX& state,
+  void takeEvaluated(const std::vector<ContactRecord>& records, double time, const VectorX& state,
                      std::vector<EventFunctions>& values);
+  bool slidesAsFace(std::size_t contact, const std::vector<ContactRecord>& records) const;
   double agreementOf(std::size_t contact) const;
+  double idleLeft(std::size_t contact, const std::vector<ContactRecord>& records) const;
   double stickingLeft(std::size_t contact, const std::vector<ContactRecord>& records) const;
   std::optional<ContactChange> firstInDip(const std::vector<ContactRecord>& records, double earlier, double from,
                                           double to);
@@ -86,7 +89,7 @@ class ContactChanges {
     std::vector<const ContactRecord*> records;
     std::vector<ContactRows> rows;
   };
-  GroupRows rowsOfGroup(const std::vector<int>& contacts, std::vector<ContactRecord>& sliding,
+  GroupRows rowsOfGroup(const std::vector<int>& contacts, std::vector<ContactRecord>& sliding, double time,
                         const VectorX& state) const;
   double infeasibility(const std::vector<ContactRecord>& records, double fraction);
   struct Trial {

@@ -118,22 +118,19 @@ void classifyOne(const ContactRows& rows, const ContactState& state, const Accel
   record.direction = (rows.block.linear.topRows<2>().transpose() * state.acceleration.head<2>()).normalized();
 }
 
-/// m/s^2, (t1, t2, n) of each contact: the accelerations of a solution with static friction once contacts slide that
-/// stuck before, against dynamic friction. `slid` tells which slid before.
-VectorX slidingAccelerations(const std::vector<const ContactRecord*>& records, const std::vector<ContactRows>& rows,
-                             const std::vector<char>& slid, const SlidingSolution& solution, const MatrixX& delassus) {
-  VectorX eased = VectorX::Zero(solution.impulses.size());
+/// Marks the contacts that slip in a solution: those that stuck before, and are accelerated by more than `still`
+/// (m/s^2). True if there are any whose friction drops by that.
+bool findSlipping(const RecordGroup& group, const SlidingSolution& solution, double still, Candidates& found) {
   bool isAny = false;
-  for (std::size_t k = 0; k < records.size(); ++k) {
-    const ContactRecord& record = *records[k];
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    ContactRecord& record = found.records[group[k]];
     const ContactMaterial& material = record.pair.material;
-    if (!record.slides || slid[k] || material.staticFriction == material.dynamicFriction) continue;
-    isAny = true;
     const Index at = 3 * static_cast<Index>(k);
-    const double less = (material.staticFriction - material.dynamicFriction) * solution.impulses[at + 2];
-    eased.segment<2>(at) = less * (rows[k].block.linear.topRows<2>() * record.direction);
+    if (record.slides || record.slips || !(material.dynamicFriction < material.staticFriction)) continue;
+    if (!(solution.impulses[at + 2] > 0 && solution.velocities.segment<2>(at).norm() > still)) continue;
+    record.slips = isAny = true;
   }
-  return isAny ? VectorX(solution.velocities + delassus * eased) : solution.velocities;
+  return isAny;
 }
 
 /// Contacts of a group that are classified: how they go on.
@@ -142,39 +139,80 @@ struct GoingContacts {
   const std::vector<ContactRows>& rows;  // at the island's state
   const VectorX& derivative;             // of it, with the forces of contacts
 
-  /// m/s^2, of the sliding of each at a state near the island's, and its time; others have that of what sticks. Of
-  /// `island` the equations are evaluated.
-  VectorX slidingAt(double time, const VectorX& state, IslandState& island) const {
+  /// m/s^2, (t1, t2, n) each, at a state near the island's, and its time, of contacts that slide as `sliding` says. Of
+  /// `island` the equations are evaluated. `moved` gets the rows there.
+  VectorX accelerationsAt(const std::vector<const ContactRecord*>& sliding, double time, const VectorX& state,
+                          IslandState& island, std::vector<ContactRows>& moved) const {
     const Mechanism& mechanism = island.assembly.mechanism;
     std::vector<BodyFrame> frames;
     findBodyFrames(mechanism.bodies, state, frames);
     ConstraintSolver constraints(mechanism.constraints, mechanism.bodies);
     if (constraints.hasConstraints()) constraints.factorize(state, frames);
-    std::vector<ContactRows> moved;
+    moved.clear();
     for (const ContactRows& contact : rows) moved.push_back(rowsOf(contact.constraint, state, frames));
     VectorX free;
     island.equations.evaluateWithoutContacts(time, state, free);
     const DenseDelassus delassus(blocksOf(moved), mechanism.bodies, frames, &constraints);
-    const SlidingSolution solution = solveContactForces(records, moved, delassus, free);
+    return solveContactForces(sliding, moved, delassus, free).velocities;
+  }
+
+  /// The state to which these accelerations lead within a short time (s).
+  VectorX stateAfter(double time, const IslandState& island) const {
+    VectorX state = island.state + time * derivative;
+    place(island.assembly.mechanism.driven, island.time + time, state);
+    return state;
+  }
+
+  /// m/s^2, of the sliding of each at a state near the island's, and its time; others have that of what sticks.
+  VectorX slidingAt(double time, const VectorX& state, IslandState& island) const {
+    std::vector<ContactRows> moved;
+    const VectorX accelerations = accelerationsAt(records, time, state, island, moved);
     VectorX sliding(std::ssize(records));
-    for (Index k = 0; k < sliding.size(); ++k) sliding[k] = solution.velocities.segment<2>(3 * k).norm();
+    for (Index k = 0; k < sliding.size(); ++k) sliding[k] = accelerations.segment<2>(3 * k).norm();
     return sliding;
   }
 
   /// m/s^3: the rates of the accelerations of sliding.
   VectorX changesOfSliding(const EventTolerances& tolerances, IslandState& island) const {
-    const double time = island.time + tolerances.rateTime;
-    VectorX state = island.state + tolerances.rateTime * derivative;
-    place(island.assembly.mechanism.driven, time, state);
-    return (slidingAt(time, state, island) - slidingAt(island.time, island.state, island)) / tolerances.rateTime;
+    const double step = tolerances.rateTime;
+    return (slidingAt(island.time + step, stateAfter(step, island), island) -
+            slidingAt(island.time, island.state, island)) /
+           step;
+  }
+
+  /// 1/s, in the frames of their B: how fast the directions turn in which contacts begin to slide, over a time (s).
+  /// Friction across them has to take what loads change there, to the first order in the time.
+  std::vector<Vec3> turningOfSliding(const std::vector<char>& slid, double step, IslandState& island) const {
+    std::vector<ContactRecord> beginning;
+    for (std::size_t k = 0; k < records.size(); ++k) beginning.push_back(*records[k]);
+    for (std::size_t k = 0; k < records.size(); ++k)
+      if (!slid[k]) beginning[k].slips = std::exchange(beginning[k].slides, false);
+    std::vector<const ContactRecord*> members;
+    for (const ContactRecord& record : beginning) members.push_back(&record);
+    std::vector<ContactRows> moved;
+    const VectorX state = stateAfter(step, island);
+    const VectorX accelerations = accelerationsAt(members, island.time + step, state, island, moved);
+    std::vector<Vec3> rates(records.size(), Vec3::Zero());
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      const Eigen::Vector2d sliding = accelerations.segment<2>(3 * static_cast<Index>(k));
+      if (slid[k] || !records[k]->slides || sliding.isZero(0)) continue;
+      const Vec3 then = moved[k].block.linear.topRows<2>().transpose() * sliding.normalized();
+      const ContactConstraint& constraint = rows[k].constraint;
+      rates[k] =
+          (inFrameOfB(constraint, then, state) - inFrameOfB(constraint, records[k]->direction, island.state)) / step;
+    }
+    return rates;
   }
 };
 
-/// Tells which contacts of a group begin to slide so slowly that they keep their directions, and a fallback where that
-/// does not help. `accelerations` are those of the contacts, (t1, t2, n) each, `largest` m/s^2.
+/// Tells which contacts of a group begin to slide so slowly that they keep their directions (those of a face turn them
+/// steadily), and a fallback where that does not help. `accelerations` are those of the contacts, (t1, t2, n) each,
+/// `largest` m/s^2; `slid` tells which slid before.
 void findSlowSliding(const RecordGroup& group, const GoingContacts& contacts, const VectorX& accelerations,
-                     double largest, const EventTolerances& tolerances, IslandState& island, Candidates& found) {
-  VectorX changes;  // found only where they matter
+                     double largest, const std::vector<char>& slid, const EventTolerances& tolerances,
+                     IslandState& island, Candidates& found) {
+  VectorX changes;             // found only where they matter
+  double shortest = INFINITY;  // s: for which a direction is kept
   for (std::size_t k = 0; k < group.size(); ++k) {
     ContactRecord& record = found.records[group[k]];
     if (!record.isLoaded || !record.slides) continue;
@@ -183,10 +221,15 @@ void findSlowSliding(const RecordGroup& group, const GoingContacts& contacts, co
     if (!slidesTooSlowly(record, sliding, tolerances, island)) continue;
     if (changes.size() == 0) changes = contacts.changesOfSliding(tolerances, island);
     sliding.change = changes[at];
-    record.keepsDirectionUntil = island.time + timeOfKeptDirection(sliding, tolerances);
+    const double kept = timeOfKeptDirection(sliding, tolerances);
+    record.keepsDirectionUntil = island.time + kept;
+    shortest = std::min(shortest, kept);
     if (slidesTooSlowly(record, sliding, tolerances, island))
       found.fallback = fallbackAt(kSlidesTooSlowly, {&record.contact}, island.assembly);
   }
+  if (!std::isfinite(shortest) || !found.records[group[0]].isOfFace) return;
+  const std::vector<Vec3> rates = contacts.turningOfSliding(slid, shortest, island);
+  for (std::size_t k = 0; k < group.size(); ++k) found.records[group[k]].directionRate = rates[k];
 }
 
 /// Classifies the contacts of one group by their forces and accelerations.
@@ -195,32 +238,37 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
   const Mechanism& mechanism = island.assembly.mechanism;
   std::vector<ContactRows> rows;
   std::vector<const ContactRecord*> members;
+  std::vector<const Contact*> contacts;
   for (const std::size_t i : group) {
     rows.push_back(rowsOf(found.records[i].contact, island.state, input.frames));
-    members.push_back(&found.records[i]);
+    members.push_back(&found.records[i]), contacts.push_back(&found.records[i].contact);
   }
   VectorX derivative;
   island.equations.evaluateWithoutContacts(island.time, island.state, derivative);
   if (nothingCloses(rows, derivative, mechanism.gravity.norm())) return;
   const DenseDelassus delassus(blocksOf(rows), mechanism.bodies, input.frames, &constraints);
-  const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative);
+  SlidingSolution solution = solveContactForces(members, rows, delassus, derivative);
   const double largest = std::max(delassus.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());
   // Accelerations that give less than a speed of rounding over the whole run do not count.
   const double most = std::max(EventTolerances::kStillRatio * largest, kRestSpeedFloor / island.scene.duration);
+  // Where contacts slip, friction is dynamic, and others may follow: at most all of them do, one after the other.
+  while (findSlipping(group, solution, input.tolerances.stillAcceleration(largest, solution.residual), found))
+    solution = solveContactForces(members, rows, delassus, derivative);
   if (!(solution.residual <= most)) logUnsolved(members, solution.residual, island);
   const AccelerationLimits limits{
       largest, input.tolerances.stillAcceleration(largest, solution.residual),
       (input.isReleasing ? EventTolerances::kReleasedRatio : EventTolerances::kUnloadedRatio) * largest};
   const MatrixX& matrix = delassus.matrix();
+  const bool isFace = areOfOneFace(contacts);
   std::vector<char> slid;
   for (std::size_t k = 0; k < group.size(); ++k) {
     ContactRecord& record = found.records[group[k]];
     const Index at = 3 * static_cast<Index>(k);
     slid.push_back(record.slides);
+    record.slips = false, record.isOfFace = isFace;
     classifyOne(rows[k], {solution.impulses[at + 2], matrix(at + 2, at + 2), solution.velocities.segment<3>(at)},
                 limits, record);
   }
-  const VectorX accelerations = slidingAccelerations(members, rows, slid, solution, matrix);
   std::vector<Index> activeRows;
   for (std::size_t k = 0; k < group.size(); ++k) {
     ContactRecord& record = found.records[group[k]];
@@ -233,7 +281,8 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
     if (record.sticks) activeRows.push_back(at), activeRows.push_back(at + 1);
   }
   delassus.apply(solution.impulses, derivative);
-  findSlowSliding(group, {members, rows, derivative}, accelerations, largest, input.tolerances, island, found);
+  findSlowSliding(group, {members, rows, derivative}, solution.velocities, largest, slid, input.tolerances, island,
+                  found);
   if (!activeRows.empty()) countRows(group, matrix(activeRows, activeRows), island.assembly, found);
   if (!(solution.frictionError <= most)) found.fallback = jamAt(members, island.assembly);
 }
@@ -279,9 +328,11 @@ ClassifiedContacts classifyContacts(const ClassificationInput& input, Constraint
     if (record.isLoaded && canLast(record.contact) &&
         !isServedOnMesh(record, input.tolerances.touch, input.frames, island))
       found.fallback = fallbackAt("a body moves over the edges of a mesh", {&record.contact}, island.assembly);
-  ClassifiedContacts result{{}, std::move(found.fallback)};
-  for (const ContactRecord& record : records)
+  ClassifiedContacts result{{}, {}, std::move(found.fallback)};
+  for (const ContactRecord& record : records) {
     if (record.isLoaded) result.active.push_back(record);
+    if (record.isOfFace && !record.isLoaded && !record.opens) result.idle.push_back(record);
+  }
   return result;
 }
 

@@ -22,6 +22,7 @@ struct ClassificationInput {
 /// Its result.
 struct ClassifiedContacts {
   std::vector<ContactRecord> active;  // those that carry load, in the order of `touching`
+  std::vector<ContactRecord> idle;    // those that carry none and do not open, in the same order
   ContactFallback fallback;           // why rows do not serve, if they don't
 };
 

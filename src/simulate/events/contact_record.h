@@ -9,19 +9,30 @@
 
 namespace cradle {
 
+/// A contact that touches and carries nothing, beside others of its pair that hold it: if they gave way in proportion
+/// to their forces, it would be as far apart as the sum of `parts` times their forces is below zero.
+struct IdleContact {
+  std::vector<std::pair<std::size_t, double>> parts;  // of active contacts, by their index
+};
+
 /// A contact whose bodies touch: how it moves and what it carries, as Coulomb's law on accelerations decides.
 struct ContactRecord {
   Contact contact;  // at the instant of classification
   ColliderPair pair;
   bool slides = false;
-  Vec3 direction = Vec3::Zero();   // unit, world, of A's sliding relative to B; zero unless it slides
-  double keepsDirectionUntil = 0;  // s: friction is against `direction`, however the contact slides
-  bool isLoaded = false;           // its normal force is above rounding: it is active
+  bool slips = false;             // it begins to slide: its friction is dynamic, against whatever way it is accelerated
+  Vec3 direction = Vec3::Zero();  // unit, world, of A's sliding relative to B; zero unless it slides
+  // s: friction is against `direction`, however the contact slides; that turns at the rate (1/s, world, or B's frame)
+  double keepsDirectionUntil = 0;
+  Vec3 directionRate = Vec3::Zero();
+  bool isLoaded = false;  // its normal force is above rounding: it is active
   bool sticks = false;
   bool opens = false;        // it carries nothing, and the accelerations open it
   bool isRedundant = false;  // statically indeterminate: its forces are not unique
+  bool isOfFace = false;     // all contacts that depend on each other with it are of one face: they share their load
   double mass = 1;           // kg, effective mass along the normal: 1 / W_nn
   double force = 1;          // N, the unit of its event functions
+  std::vector<IdleContact> idle = {};  // those whose sums begin with its force
 };
 
 /// Why contacts cannot be rows of the equations of motion, so that time stepping has to take over.

@@ -183,6 +183,9 @@ struct EventTolerances {
   // contacts would otherwise be released one after the other. [0, 1e-3], [0, 0.1]
   static constexpr double kUnloadedRatio = 1e-9, kReleasedRatio = 1e-6;  // of the largest acceleration
 
+  // What was idle carries more: so much that it does when it is classified anew.
+  static constexpr double kLoadedRatio = 100 * kUnloadedRatio;
+
   // Forces that leave more do not keep contacts: more than at the classification, or a contact would fail at once.
   // [0, 0.01]
   static constexpr double kInfeasibleRatio = 10 * kStillRatio;  // of the largest acceleration

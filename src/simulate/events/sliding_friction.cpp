@@ -42,24 +42,32 @@ SlidingSolution solveContactForces(const std::vector<const ContactRecord*>& reco
   bool slides = false;
   for (const ContactRecord* record : records) {
     const ContactMaterial& material = record->pair.material;
-    frictions.push_back(record->slides ? material.dynamicFriction : material.staticFriction);
-    staticFrictions.push_back(record->slides ? 0 : material.staticFriction);
+    frictions.push_back(record->slides || record->slips ? material.dynamicFriction : material.staticFriction);
+    staticFrictions.push_back(record->slides ? 0 : frictions.back());
     slides = slides || (record->slides && material.dynamicFriction > 0);
   }
-  if (!slides) return {solveFrictionalContact(delassus.matrix(), free, staticFrictions)};
+  const MatrixX& matrix = delassus.matrix();
+  std::vector<const Contact*> contacts;
+  for (const ContactRecord* record : records) contacts.push_back(&record->contact);
+  const bool isFace = areOfOneFace(contacts);
+  const auto solve = [&](const VectorX& g, const VectorX& near) {
+    return isFace ? solveSharedContact(matrix, g, staticFrictions, {}, near)
+                  : solveFrictionalContact(matrix, g, staticFrictions, near);
+  };
+  if (!slides) return {solve(free, {})};
   const std::vector<Eigen::Vector2d> directions = slidingDirections(records, rows);
   VectorX friction = VectorX::Zero(free.size()), used;
   SlidingSolution solution;
   for (int round = 0; round < kMaxFrictionRounds; ++round) {
     used = friction;
-    static_cast<ContactSolution&>(solution) =
-        solveFrictionalContact(delassus.matrix(), free + delassus.matrix() * used, staticFrictions, solution.impulses);
+    static_cast<ContactSolution&>(solution) = solve(free + matrix * used, solution.impulses);
     friction = slidingFriction(directions, frictions, solution.impulses);
     const ContactSolution found =
-        solveSlidingContact(delassus.matrix(), free, frictions, directions, solution.impulses + friction);
+        isFace ? solveSharedContact(matrix, free, frictions, directions, solution.impulses + friction)
+               : solveSlidingContact(matrix, free, frictions, directions, solution.impulses + friction);
     if (found.converged) return {found};
   }
-  const VectorX error = delassus.matrix() * (friction - used);
+  const VectorX error = matrix * (friction - used);
   solution.velocities += error;
   solution.frictionError = error.cwiseAbs().maxCoeff();
   solution.impulses += friction;

@@ -16,7 +16,8 @@ struct SlidingSolution : ContactSolution {
 
 /// Forces (N) and relative accelerations of contacts by Coulomb's law, components (t1, t2, n) each, for bodies that
 /// have the accelerations in `derivative` without them. A contact that slides has the friction -mu lambda_n d, d its
-/// direction of sliding; the others have static friction.
+/// direction of sliding; those that slip have dynamic friction, and the others static friction. Contacts of one face
+/// share their load as rows of active contacts do (solveContactSharing).
 SlidingSolution solveContactForces(const std::vector<const ContactRecord*>& records,
                                    const std::vector<ContactRows>& rows, const DenseDelassus& delassus,
                                    const VectorX& derivative);

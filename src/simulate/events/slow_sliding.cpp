@@ -18,7 +18,7 @@
 //
 // Friction that follows the direction of such sliding asks for some mu g / (3 j t) steps from t on, with v = j t^2 / 2.
 // It keeps its direction while the contact slides by A / 100 or 2 A / 100: the way across is no longer, and friction
-// takes the velocity across within v / (mu g) then.
+// takes the velocity across within v / (mu g) then. With A / 100 = j t^2 / 6 these are mu g t^2 / (18 A / 100) steps.
 
 #include "simulate/events/slow_sliding.h"
 
@@ -64,6 +64,12 @@ bool slidesTooSlowly(const ContactRecord& record, const SlidingAccelerations& ac
 double timeOfKeptDirection(const SlidingAccelerations& accelerations, const EventTolerances& tolerances) {
   const double way = kKeptWay * tolerances.scales.accuracy;  // m: a t^2 / 2, or j t^3 / 6
   return std::min(std::sqrt(2 * way / accelerations.sliding), exp(log(6 * way / std::abs(accelerations.change)) / 3));
+}
+
+double stepsAfterKeptDirection(const ContactRecord& record, double time, const EventTolerances& tolerances) {
+  const double kept = record.keepsDirectionUntil - time;
+  const double friction = record.pair.material.dynamicFriction * record.force / record.mass;  // m/s^2: mu g
+  return friction * kept * kept / (18 * kKeptWay * tolerances.scales.accuracy);
 }
 
 bool isDirectionTurnedFast(const ContactRecord& record, double speed, double normal) {

@@ -22,6 +22,9 @@ bool slidesTooSlowly(const ContactRecord& record, const SlidingAccelerations& ac
 /// s: how long the friction of a contact that begins to slide so slowly may keep its direction.
 double timeOfKeptDirection(const SlidingAccelerations& accelerations, const EventTolerances& tolerances);
 
+/// How many steps follow the friction of such a contact, from then on.
+double stepsAfterKeptDirection(const ContactRecord& record, double time, const EventTolerances& tolerances);
+
 /// Whether sliding at `speed` (m/s) under the normal force `normal` (N) has its direction turned so fast by friction
 /// that steps can hardly follow.
 bool isDirectionTurnedFast(const ContactRecord& record, double speed, double normal);

@@ -205,6 +205,30 @@ TEST(ContactChanges, AreOfAllIndeterminateContactsWhereNoForcesKeepThem) {
   EXPECT_NEAR(change->fraction * 0.1, expected, 1.001e-6 * expected / kStaticFriction);
 }
 
+// A pillar of 3 kg, of half widths a and of height 2 h, h / a = 3, under gravity that pulls sideways, f in x and in z:
+// a corner is idle where 3 (f + f) > g. A tractor draws the pillar back along x by k v t, through its middle, until 3
+// (2 f
+// - k v t / m) = g. The corner then begins to carry 3 k v / 4 a second; it is told at 1e-7 of the force on one.
+TEST(ContactChanges, AreOfAnIdleContactThatComesToCarryLoad) {
+  const double sideways = 0.2 * kGravity;
+  OnPlane at(R"({"name": "pillar", "shape": {"box": {"size": [0.2, 0.6, 0.2]}}, "mass": 3, "position": [0, 0.3, 0],
+               "material": "rough"}, {"name": "tractor", "shape": {"sphere": {"radius": 0.1}}, "mass": 1e9,
+               "collision": "none", "position": [-1, 0.3, 0], "linearVelocity": [-2, 0, 0]})",
+             fmt::format(R"("gravity": [{0}, -9.81, {0}], "springs": [{{"bodyA": "pillar", "anchorA": [0, 0, 0],
+               "bodyB": "tractor", "anchorB": [0, 0, 0], "stiffness": 6, "restLength": 1}}])",
+                         sideways));
+  at.mechanism().pushes = {{{1, Vec3::Zero()}, 1e9 * Vec3(-sideways, kGravity, -sideways)}};  // against its weight
+  at.classify();
+  ASSERT_THAT(at.contacts(), SizeIs(3));
+  const double expected = (0.4 - 1 / 3.0) * kGravity * 3 / (6 * 2);
+  dop853(at.island.rightHandSide, at.state(), 0, 0.5, at.island.step);
+  prepareInterpolant(at.island.rightHandSide, at.island.step);
+  const auto change = at.active.firstChange();
+  ASSERT_TRUE(change);
+  EXPECT_EQ(change->kind, Change::load);
+  EXPECT_NEAR(change->fraction * 0.5, expected, 1e-7 * 3 * kGravity / (3 * 6 * 2 / 4.0));
+}
+
 // A capsule along x rolls along z on the floor and slides along a wall, x = 0. Friction of the floor may hold it along
 // x as well as the wall: of gravity's push F along x the rows take a part by the wall, of the sign of F. Where F leads
 // away from the wall, that pulls, and its friction would drive the capsule.
