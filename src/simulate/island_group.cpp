@@ -15,12 +15,13 @@ namespace {
 // Windows, and parts of a body's radius: bodies that come no nearer than that part over so many windows are islands of
 // their own.
 constexpr double kApartWindows = 4, kApartMargin = 0.5;
-constexpr double kMeetingMargin = 0.05;     // of a radius: bodies that come nearer within a window are taken to meet
-constexpr double kFastRatio = 0.25;         // of the bodies that move: they go farther than their radii in a window
-constexpr long kPartingEvaluations = 100;   // of equations in a window: some eight steps
-constexpr std::size_t kManyIslands = 1000;  // of more, 3 kB each of steps' stages are freed between windows
-constexpr long kMostFrames = 100;           // in a window, each of which is kept until it counts
-constexpr double kTouchMargin = 1e-6;       // of a radius: far more than tolerances of contact
+constexpr double kMeetingMargin = 0.05;      // of a radius: bodies that come nearer within a window are taken to meet
+constexpr double kFastRatio = 0.25;          // of the bodies that move: they go farther than their radii in a window
+constexpr double kPartingEvaluations = 100;  // of equations in a window: some eight steps
+constexpr double kMostStretch = 16;          // of windows, while there is one island and nothing to part
+constexpr std::size_t kManyIslands = 1000;   // of more, 3 kB each of steps' stages are freed between windows
+constexpr long kMostFrames = 100;            // in a window, each of which is kept until it counts
+constexpr double kTouchMargin = 1e-6;        // of a radius: far more than tolerances of contact
 
 Reach sphereAround(const Bounds& box, double radius) {
   return {box.center(), box.diagonal().norm() / 2 + radius};
@@ -76,8 +77,13 @@ const VectorX& IslandGroup::stateAt(double time, const std::function<void(double
   while (frames_.back().time < until) {
     if (fault_) std::rethrow_exception(fault_);
     const double length = windowLength();
-    regroupFor(length);
-    addWindow(length, reached);
+    if (islands_.size() == 1 && !mayPart()) {
+      stretch_ = std::min(2 * stretch_, kMostStretch);
+    } else {
+      stretch_ = 1;
+      regroupFor(length);
+    }
+    addWindow(std::min(stretch_ * length, longestWindow()), reached);
   }
   while (frames_.front().time < until) frames_.pop_front();
   CRADLE_CHECK(frames_.front().time <= time + sameTime(time));  // others are not kept
@@ -94,9 +100,14 @@ long IslandGroup::evaluations() const {
                          [](long sum, const Island& island) { return sum + island.solver->evaluations(); });
 }
 
+/// s
+double IslandGroup::longestWindow() const {
+  return std::min(scene_.duration, frameTime(scene_, kMostFrames));
+}
+
 /// s: the time in which three of four bodies that move go no farther than their radii, but no more than kMostFrames.
 double IslandGroup::windowLength() const {
-  const double longest = std::min(scene_.duration, frameTime(scene_, kMostFrames));
+  const double longest = longestWindow();
   const double gravity = all_.mechanism.gravity.norm();
   std::vector<double> times;
   for (std::size_t i = 0; i < clusterOfBody_.size(); ++i) {
@@ -147,12 +158,13 @@ void IslandGroup::regroupFor(double window) {
 }
 
 bool IslandGroup::mayPart() const {
-  return std::any_of(islands_.begin(), islands_.end(), isWorthParting);
+  return std::any_of(islands_.begin(), islands_.end(), [this](const Island& island) { return isWorthParting(island); });
 }
 
 /// To begin anew costs an island some steps.
-bool IslandGroup::isWorthParting(const Island& island) {
-  return island.clusters.size() > 1 && island.evaluationsOfWindow > kPartingEvaluations;
+bool IslandGroup::isWorthParting(const Island& island) const {
+  const double evaluations = static_cast<double>(island.evaluationsOfWindow) / stretch_;
+  return island.clusters.size() > 1 && evaluations > kPartingEvaluations;
 }
 
 /// Clusters of one island that do not stay apart over a time (s), or are not to part, joined.
@@ -334,7 +346,7 @@ void IslandGroup::move(Island& island, const std::vector<double>& times,
                        const std::function<void(double time)>& reached) const {
   island.hasMoved = true;
   try {
-    island.solver->beginSweep(times.back());
+    if (islands_.size() > 1) island.solver->beginSweep(times.back());  // one that is alone meets nothing
     island.snapshots.reserve(times.size());
     for (const double time : times) {
       const VectorX& state = island.solver->stateAt(time, reached);

@@ -82,9 +82,10 @@ class IslandGroup {
 
   void addWindow(double length, const std::function<void(double time)>& reached);
   double windowLength() const;
+  double longestWindow() const;
   void regroupFor(double window);
   bool mayPart() const;
-  static bool isWorthParting(const Island& island);
+  bool isWorthParting(const Island& island) const;
   DisjointSets nearWithinIslands(double horizon) const;
   DisjointSets islandsNow() const;
   std::size_t islandIndexOf(int cluster) const { return islandOfCluster_[static_cast<std::size_t>(cluster)]; }
@@ -124,6 +125,7 @@ class IslandGroup {
   std::vector<int> clusterOfBody_;  // by moving body; -1: driven
   std::vector<std::size_t> islandOfCluster_;
   Twins twins_;
+  double stretch_ = 1;               // of the last window, over windowLength
   std::vector<Island> islands_;      // in the order of their first clusters
   Snapshot start_;                   // of the window under way
   Ledger settled_ = Ledger::Zero();  // J: ledgers of islands that are no more
