@@ -10,12 +10,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cradle {
 namespace {
 
 constexpr int kMaxProjectionSteps = 20;  // quadratic convergence needs 1 or 2 from a step's error
-constexpr double kSameNormal = 1e-9;     // sine between normals of one face
 constexpr double kStalled = 0.5;         // a step that leaves more of an error has met rounding, or contradictions
 
 std::size_t index(int i) {
@@ -40,7 +40,7 @@ void ContactSolver::factorize(double time, const VectorX& state, const std::vect
   for (Group& group : groups_) {
     couple(group);
     if (group.slides) coupleFriction(group, frames, time);
-    group.solver.factorize(group.rows, group.slides, group.slides && isFace(group));
+    group.solver.factorize(group.rows, group.slides, group.slides && sharesLoads(group));
   }
   if (hasFreeConstraints_) constraintSolver_.factorize(state, frames);
 }
@@ -84,6 +84,10 @@ void ContactSolver::analyze(const std::vector<char>& resting) {
       if (isDriven[i]) isOther[i] = 0;
     for (const int body : members.bodies) isGrouped[index(body)] = 1, isOther[index(body)] = 0;
     Group& group = groups_.emplace_back(Group{std::move(members)});
+    std::vector<std::pair<int, int>> joined;
+    for (const int contact : group.members.contacts)
+      joined.emplace_back(contactJoints_[index(contact)].bodyA, contactJoints_[index(contact)].bodyB);
+    group.hasNoLoop = joinWithoutLoop(joined, joinsNothing, group.members.hasConstraints);
     if (group.members.hasConstraints) group.constraints.emplace(constraints_, bodies_).exclude(isOther, resting);
   }
   constraintSolver_.exclude(isGrouped, resting);
@@ -207,16 +211,12 @@ void ContactSolver::findDiagonal(Group& group) {
   }
 }
 
-/// Whether a group's contacts have one normal and join the same bodies: a face that lies on another one.
-bool ContactSolver::isFace(const Group& group) const {
+/// Whether a group's contacts are of faces that share their loads.
+bool ContactSolver::sharesLoads(const Group& group) const {
   const std::vector<int>& contacts = group.members.contacts;
-  const std::size_t first = index(contacts[0]);
-  return std::all_of(contacts.begin(), contacts.end(), [&](int contact) {
-    const std::size_t i = index(contact);
-    return contactJoints_[i].bodyA == contactJoints_[first].bodyA &&
-           contactJoints_[i].bodyB == contactJoints_[first].bodyB &&
-           kinematics_[i].normal.cross(kinematics_[first].normal).norm() < kSameNormal;
-  });
+  return group.hasNoLoop && std::all_of(contacts.begin(), contacts.end(), [&](int contact) {
+           return areParallel(kinematics_[index(contact)].normal, kinematics_[index(contacts[0])].normal);
+         });
 }
 
 /// The matrix of a group in which contacts slide: columns differ with friction alone.

@@ -79,9 +79,10 @@ class ContactSolver {
     std::optional<ConstraintSolver> constraints = {};  // if it has any
     int rows = 0;
     bool slides = false;
-    bool isPlaced = false;  // by project, as well as it can be
-    double error = 0;       // m or rad, that project found last
-    double asked = 0;       // the largest rate that was to be taken out last
+    bool hasNoLoop = false;  // few contacts, which join bodies without a loop
+    bool isPlaced = false;   // by project, as well as it can be
+    double error = 0;        // m or rad, that project found last
+    double asked = 0;        // the largest rate that was to be taken out last
     MinimumNormSolver solver = {};
   };
   /// How a contact or a constraint joined two bodies when groups were found: `kind` is the motion of a contact, or the
@@ -116,7 +117,7 @@ class ContactSolver {
 
   void constrainGroupVelocities(VectorX& state);
   void placeGaps(const VectorX& state, const std::vector<char>& resting);
-  bool isFace(const Group& group) const;
+  bool sharesLoads(const Group& group) const;
   double errorOf(const Group& group) const;
   bool isRounding(const Group& group) const;
   void displace(Group& group, VectorX& state);

@@ -1,8 +1,18 @@
 #include "constraints/contact_groups.h"
 
+#include <algorithm>
+#include <set>
+#include <utility>
+
 #include "constraints/disjoint_sets.h"
 
 namespace cradle {
+namespace {
+
+constexpr double kParallel = 1e-9;        // sine between normals of faces that lie on each other
+constexpr std::size_t kMostSharing = 12;  // contacts, of three boxes: more are dear to solve
+
+}  // namespace
 
 std::vector<ContactGroup> findContactGroups(const std::vector<ContactConstraint>& contacts,
                                             const Constraints& constraints, const std::vector<char>& fixed) {
@@ -35,6 +45,24 @@ std::vector<ContactGroup> findContactGroups(const std::vector<ContactConstraint>
     if (const int* const group = groupOf(body, kFixed); group && *group >= 0)
       groups[static_cast<std::size_t>(*group)].bodies.push_back(body);
   return groups;
+}
+
+bool joinWithoutLoop(const std::vector<std::pair<int, int>>& contacts, const std::vector<char>& fixed,
+                     bool hasConstraints) {
+  if (contacts.size() > kMostSharing) return false;
+  const auto moving = [&](int body) { return body == kFixed || fixed[static_cast<std::size_t>(body)] ? kFixed : body; };
+  std::set<std::pair<int, int>> pairs;
+  std::set<int> bodies;
+  for (const auto& [a, b] : contacts) {
+    pairs.emplace(std::minmax({a, b}));
+    for (const int body : {moving(a), moving(b)})
+      if (body != kFixed) bodies.insert(body);
+  }
+  return pairs.size() <= (hasConstraints ? std::size_t{1} : bodies.size());
+}
+
+bool areParallel(const Vec3& one, const Vec3& other) {
+  return one.cross(other).norm() < kParallel;
 }
 
 }  // namespace cradle

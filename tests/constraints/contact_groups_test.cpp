@@ -184,5 +184,20 @@ TEST(ContactGroups, SlidingCornersKeepTheirHeight) {
   EXPECT_NEAR(Vec3(linearVelocity(rate, 0)).norm(), 0.3 * kGravity, 1e-12);  // the coefficient of corner()
 }
 
+// A box on a box on the ground hangs together without a loop; a plank on two boxes, or a box between two driven ones,
+// does not. Constraints may close a loop wherever there is more than one pair.
+TEST(ContactGroups, JoinBodiesWithoutALoop) {
+  const std::vector<char> free(4, 0), twoDriven{0, 1, 1, 0};
+  const std::vector<std::pair<int, int>> box{{0, kFixed}, {0, kFixed}}, stack{{0, kFixed}, {1, 0}, {0, 1}};
+  EXPECT_TRUE(joinWithoutLoop(box, free, false));
+  EXPECT_TRUE(joinWithoutLoop(box, free, true));
+  EXPECT_TRUE(joinWithoutLoop(stack, free, false));
+  EXPECT_FALSE(joinWithoutLoop(stack, free, true));
+  EXPECT_FALSE(joinWithoutLoop({{0, kFixed}, {1, kFixed}, {2, 0}, {2, 1}}, free, false));
+  EXPECT_TRUE(joinWithoutLoop({{0, 1}, {0, 2}}, free, false));
+  EXPECT_FALSE(joinWithoutLoop({{0, 1}, {0, 2}}, twoDriven, false));
+  EXPECT_FALSE(joinWithoutLoop(std::vector<std::pair<int, int>>(13, {0, kFixed}), free, false));
+}
+
 }  // namespace
 }  // namespace cradle

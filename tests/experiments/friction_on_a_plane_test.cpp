@@ -76,11 +76,13 @@ TEST(SpinningBox, StopsByTheClosedFormOfFourCorners) {
 }
 
 // A box on its four corners that a hand drags by a spring at one of its corners: it sticks, slips, pivots about one
-// corner, and tips a little, so that corners carry nothing and load again. Each ends that bends with its state only, so
-// that ends at several accuracies agree within about ten times these, and the promise is kept.
+// corner, and tips a little, so that corners carry nothing and load again. Some lie on a wider box that is free as
+// well. Each ends that bends with its state only, so that ends at several accuracies agree within about ten times
+// these, and the promise is kept.
 TEST(DraggedBox, EndsWithinItsAccuracy) {
   Random random;
-  for (int scene = 0; scene < 8; ++scene) {
+  for (int scene = 0; scene < 12; ++scene) {
+    const double below = scene < 8 ? 0 : 0.2;  // m: height of the wider box
     const Vec3 size{random.between(0.2, 0.5), random.between(0.1, 0.4), random.between(0.2, 0.5)};
     const double friction = random.between(0.2, 0.8), ratio = scene % 3 == 0 ? 1.2 : 1;
     const std::string bodies = fmt::format(
@@ -89,9 +91,11 @@ TEST(DraggedBox, EndsWithinItsAccuracy) {
           "orientation": {{"axis": [0, 1, 0], "angleDegrees": {}}}}},
         {{"name": "hand", "shape": {{"sphere": {{"radius": 0.02}}}}, "motion": "driven", "collision": "none",
           "position": {}, "linearVelocity": [{}, 0, {}]}})",
-        vectorText(size), size.y() / 2, random.between(-180, 180),
-        vectorText({random.between(-1, 1), random.between(0.1, 0.6), random.between(-1, 1)}), random.between(-0.6, 0.6),
-        random.between(-0.6, 0.6));
+        vectorText(size), below + size.y() / 2, random.between(-180, 180),
+        vectorText({random.between(-1, 1), below + random.between(0.1, 0.6), random.between(-1, 1)}),
+        random.between(-0.6, 0.6), random.between(-0.6, 0.6));
+    const std::string wider = below == 0 ? "" : R"(, {"name": "wider", "shape": {"box": {"size": [0.8, 0.2, 0.8]}},
+        "material": "m", "position": [0, 0.1, 0]})";
     const std::string spring = fmt::format(
         R"({{"bodyA": "box", "anchorA": {}, "bodyB": "hand", "anchorB": [0, 0, 0], "stiffness": {}, "restLength": {},
           "damping": {}}})",
@@ -101,7 +105,7 @@ TEST(DraggedBox, EndsWithinItsAccuracy) {
       const Trajectory moved = simulate(sceneWith(fmt::format(
           R"("duration": 3, "accuracy": {}, "output": {{"framesPerSecond": 20}}, "materials": {{"m": {{"density": 500,
           "restitution": 0, "staticFriction": {}, "dynamicFriction": {}}}}}, "bodies": [{}], "springs": [{}])",
-          accuracy, ratio * friction, friction, bodies, spring)));
+          accuracy, ratio * friction, friction, bodies + wider, spring)));
       EXPECT_TRUE(moved.cost.promise.ends_with("; kept")) << scene << " " << accuracy << moved.cost.promise;
       return endOf(moved);
     };

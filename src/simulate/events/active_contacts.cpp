@@ -65,7 +65,7 @@ void ActiveContacts::classify(const std::vector<Contact>& touching, ConstraintSo
   for (const ContactRecord& record : found.idle) addIdle(record);
   maxTurningSteps_ = kMaxTurningSteps;
   for (const ContactRecord& record : records_)
-    if (record.isOfFace && record.keepsDirectionUntil > island_.time)
+    if (record.sharesLoads && record.keepsDirectionUntil > island_.time)
       maxTurningSteps_ += kTurningMargin * stepsAfterKeptDirection(record, island_.time, tolerances_);
   maxTurningSteps_ = std::min(maxTurningSteps_, kMostTurningSteps);
   recordContactEvents(previous_, records_, frames_, island_, island_.log);
@@ -91,10 +91,12 @@ void ActiveContacts::add(const ContactRecord& record, const std::vector<BodyFram
 void ActiveContacts::addIdle(const ContactRecord& idle) {
   const double size = smallestSize(idle.contact, island_.assembly.radii);
   const auto rowOf = [&](const ContactRecord& record) {
-    const ContactRows rows = rowsOf(record.contact, island_.state, frames_);
+    const ConstraintBlock block = rowsOf(record.contact, island_.state, frames_).block;
+    const bool isMirrored = block.bodyA != record.contact.bodyA;  // where A's surface is a face, rows have it for B
+    const Vec3 linear = block.linear.row(2), angularA = block.angularA.row(2), angularB = block.angularB.row(2);
     Eigen::Matrix<double, 9, 1> row;
-    row << rows.block.linear.row(2).transpose(), rows.block.angularA.row(2).transpose() / size,
-        rows.block.angularB.row(2).transpose() / size;
+    row << (isMirrored ? -1 : 1) * linear, (isMirrored ? angularB : angularA) / size,
+        (isMirrored ? angularA : angularB) / size;
     return row;
   };
   std::vector<std::size_t> beside;

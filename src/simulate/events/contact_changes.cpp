@@ -132,7 +132,7 @@ double ContactChanges::slidingNormalForce(std::size_t contact, const std::vector
 
 /// Whether a contact is of a face that slides with friction.
 bool ContactChanges::slidesAsFace(std::size_t contact, const std::vector<ContactRecord>& records) const {
-  if (!records[contact].isOfFace) return false;
+  if (!records[contact].sharesLoads) return false;
   for (std::size_t i = 0; i < records.size(); ++i)
     if (records[i].contact.pair == records[contact].contact.pair &&
         mechanism().contacts[i].motion == ContactMotion::sliding)
@@ -385,7 +385,8 @@ double ContactChanges::infeasibility(const std::vector<ContactRecord>& records, 
     largest = std::max(largest, delassus.accelerations(derivative_).cwiseAbs().maxCoeff());
     const auto isInDoubt = [this](int contact) { return isInDoubt_[static_cast<std::size_t>(contact)] != 0; };
     if (std::none_of(group.contacts.begin(), group.contacts.end(), isInDoubt)) continue;
-    const SlidingSolution solution = solveContactForces(members.records, members.rows, delassus, derivative_);
+    const SlidingSolution solution =
+        solveContactForces(members.records, members.rows, delassus, derivative_, shareLoads(members.records, island_));
     for (std::size_t k = 0; k < members.records.size(); ++k) {
       const Vec3 acceleration = solution.velocities.segment<3>(3 * static_cast<Eigen::Index>(k));
       const double along = members.records[k]->sticks ? acceleration.head<2>().norm() : 0;

@@ -153,7 +153,7 @@ struct GoingContacts {
     VectorX free;
     island.equations.evaluateWithoutContacts(time, state, free);
     const DenseDelassus delassus(blocksOf(moved), mechanism.bodies, frames, &constraints);
-    return solveContactForces(sliding, moved, delassus, free).velocities;
+    return solveContactForces(sliding, moved, delassus, free, records[0]->sharesLoads).velocities;
   }
 
   /// The state to which these accelerations lead within a short time (s).
@@ -227,7 +227,7 @@ void findSlowSliding(const RecordGroup& group, const GoingContacts& contacts, co
     if (slidesTooSlowly(record, sliding, tolerances, island))
       found.fallback = fallbackAt(kSlidesTooSlowly, {&record.contact}, island.assembly);
   }
-  if (!std::isfinite(shortest) || !found.records[group[0]].isOfFace) return;
+  if (!std::isfinite(shortest) || !found.records[group[0]].sharesLoads) return;
   const std::vector<Vec3> rates = contacts.turningOfSliding(slid, shortest, island);
   for (std::size_t k = 0; k < group.size(); ++k) found.records[group[k]].directionRate = rates[k];
 }
@@ -238,34 +238,33 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
   const Mechanism& mechanism = island.assembly.mechanism;
   std::vector<ContactRows> rows;
   std::vector<const ContactRecord*> members;
-  std::vector<const Contact*> contacts;
   for (const std::size_t i : group) {
     rows.push_back(rowsOf(found.records[i].contact, island.state, input.frames));
-    members.push_back(&found.records[i]), contacts.push_back(&found.records[i].contact);
+    members.push_back(&found.records[i]);
   }
+  const bool sharesLoads = shareLoads(members, island);
   VectorX derivative;
   island.equations.evaluateWithoutContacts(island.time, island.state, derivative);
   if (nothingCloses(rows, derivative, mechanism.gravity.norm())) return;
   const DenseDelassus delassus(blocksOf(rows), mechanism.bodies, input.frames, &constraints);
-  SlidingSolution solution = solveContactForces(members, rows, delassus, derivative);
+  SlidingSolution solution = solveContactForces(members, rows, delassus, derivative, sharesLoads);
   const double largest = std::max(delassus.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());
   // Accelerations that give less than a speed of rounding over the whole run do not count.
   const double most = std::max(EventTolerances::kStillRatio * largest, kRestSpeedFloor / island.scene.duration);
   // Where contacts slip, friction is dynamic, and others may follow: at most all of them do, one after the other.
   while (findSlipping(group, solution, input.tolerances.stillAcceleration(largest, solution.residual), found))
-    solution = solveContactForces(members, rows, delassus, derivative);
+    solution = solveContactForces(members, rows, delassus, derivative, sharesLoads);
   if (!(solution.residual <= most)) logUnsolved(members, solution.residual, island);
   const AccelerationLimits limits{
       largest, input.tolerances.stillAcceleration(largest, solution.residual),
       (input.isReleasing ? EventTolerances::kReleasedRatio : EventTolerances::kUnloadedRatio) * largest};
   const MatrixX& matrix = delassus.matrix();
-  const bool isFace = areOfOneFace(contacts);
   std::vector<char> slid;
   for (std::size_t k = 0; k < group.size(); ++k) {
     ContactRecord& record = found.records[group[k]];
     const Index at = 3 * static_cast<Index>(k);
     slid.push_back(record.slides);
-    record.slips = false, record.isOfFace = isFace;
+    record.slips = false, record.sharesLoads = sharesLoads;
     classifyOne(rows[k], {solution.impulses[at + 2], matrix(at + 2, at + 2), solution.velocities.segment<3>(at)},
                 limits, record);
   }
@@ -331,7 +330,7 @@ ClassifiedContacts classifyContacts(const ClassificationInput& input, Constraint
   ClassifiedContacts result{{}, {}, std::move(found.fallback)};
   for (const ContactRecord& record : records) {
     if (record.isLoaded) result.active.push_back(record);
-    if (record.isOfFace && !record.isLoaded && !record.opens) result.idle.push_back(record);
+    if (record.sharesLoads && !record.isLoaded && !record.opens) result.idle.push_back(record);
   }
   return result;
 }

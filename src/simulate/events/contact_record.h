@@ -27,11 +27,11 @@ struct ContactRecord {
   Vec3 directionRate = Vec3::Zero();
   bool isLoaded = false;  // its normal force is above rounding: it is active
   bool sticks = false;
-  bool opens = false;        // it carries nothing, and the accelerations open it
-  bool isRedundant = false;  // statically indeterminate: its forces are not unique
-  bool isOfFace = false;     // all contacts that depend on each other with it are of one face: they share their load
-  double mass = 1;           // kg, effective mass along the normal: 1 / W_nn
-  double force = 1;          // N, the unit of its event functions
+  bool opens = false;                  // it carries nothing, and the accelerations open it
+  bool isRedundant = false;            // statically indeterminate: its forces are not unique
+  bool sharesLoads = false;            // with all that depend on each other with it (shareLoads)
+  double mass = 1;                     // kg, effective mass along the normal: 1 / W_nn
+  double force = 1;                    // N, the unit of its event functions
   std::vector<IdleContact> idle = {};  // those whose sums begin with its force
 };
 

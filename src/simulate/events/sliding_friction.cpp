@@ -6,6 +6,11 @@
 
 #include "simulate/events/sliding_friction.h"
 
+#include <algorithm>
+#include <utility>
+
+#include "constraints/contact_groups.h"
+
 namespace cradle {
 namespace {
 
@@ -34,9 +39,30 @@ VectorX slidingFriction(const std::vector<Eigen::Vector2d>& directions, const st
 
 }  // namespace
 
+bool shareLoads(const std::vector<const ContactRecord*>& records, const IslandState& island) {
+  std::vector<char> joinsNothing = island.equations.resting();
+  for (const DrivenBody& driven : island.assembly.mechanism.driven)
+    joinsNothing[static_cast<std::size_t>(driven.body)] = 1;
+  std::vector<std::pair<int, int>> joined;
+  for (const ContactRecord* record : records) {
+    if (!areParallel(record->contact.normal, records[0]->contact.normal)) return false;
+    joined.emplace_back(record->contact.bodyA, record->contact.bodyB);
+  }
+  const Constraints& constraints = island.assembly.mechanism.constraints;
+  const auto isJoined = [&](int body) {
+    return body != kFixed && !joinsNothing[static_cast<std::size_t>(body)] &&
+           std::any_of(joined.begin(), joined.end(),
+                       [&](auto& pair) { return pair.first == body || pair.second == body; });
+  };
+  const bool hasConstraints = std::any_of(constraints.begin(), constraints.end(), [&](const Constraint& constraint) {
+    return isJoined(constraint.anchorA.body) || isJoined(constraint.anchorB.body);
+  });
+  return joinWithoutLoop(joined, joinsNothing, hasConstraints);
+}
+
 SlidingSolution solveContactForces(const std::vector<const ContactRecord*>& records,
                                    const std::vector<ContactRows>& rows, const DenseDelassus& delassus,
-                                   const VectorX& derivative) {
+                                   const VectorX& derivative, bool sharesLoads) {
   const VectorX free = delassus.accelerations(derivative);
   std::vector<double> frictions, staticFrictions;
   bool slides = false;
@@ -47,12 +73,9 @@ SlidingSolution solveContactForces(const std::vector<const ContactRecord*>& reco
     slides = slides || (record->slides && material.dynamicFriction > 0);
   }
   const MatrixX& matrix = delassus.matrix();
-  std::vector<const Contact*> contacts;
-  for (const ContactRecord* record : records) contacts.push_back(&record->contact);
-  const bool isFace = areOfOneFace(contacts);
   const auto solve = [&](const VectorX& g, const VectorX& near) {
-    return isFace ? solveSharedContact(matrix, g, staticFrictions, {}, near)
-                  : solveFrictionalContact(matrix, g, staticFrictions, near);
+    return sharesLoads ? solveSharedContact(matrix, g, staticFrictions, {}, near)
+                       : solveFrictionalContact(matrix, g, staticFrictions, near);
   };
   if (!slides) return {solve(free, {})};
   const std::vector<Eigen::Vector2d> directions = slidingDirections(records, rows);
@@ -63,8 +86,8 @@ SlidingSolution solveContactForces(const std::vector<const ContactRecord*>& reco
     static_cast<ContactSolution&>(solution) = solve(free + matrix * used, solution.impulses);
     friction = slidingFriction(directions, frictions, solution.impulses);
     const ContactSolution found =
-        isFace ? solveSharedContact(matrix, free, frictions, directions, solution.impulses + friction)
-               : solveSlidingContact(matrix, free, frictions, directions, solution.impulses + friction);
+        sharesLoads ? solveSharedContact(matrix, free, frictions, directions, solution.impulses + friction)
+                    : solveSlidingContact(matrix, free, frictions, directions, solution.impulses + friction);
     if (found.converged) return {found};
   }
   const VectorX error = matrix * (friction - used);

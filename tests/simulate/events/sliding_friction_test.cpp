@@ -36,7 +36,7 @@ struct SlidingBody {
   SlidingSolution solve() const {
     std::vector<const ContactRecord*> members;
     for (const ContactRecord& record : records) members.push_back(&record);
-    return solveContactForces(members, rows, delassus(), derivative);
+    return solveContactForces(members, rows, delassus(), derivative, true);
   }
   /// A contact's part along the surfaces, in the world.
   Vec3 tangential(const VectorX& components, std::size_t contact) const {
