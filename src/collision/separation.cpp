@@ -10,6 +10,7 @@
 #include "collision/manifold.h"
 #include "collision/mesh_collider.h"
 #include "collision/mesh_nearest.h"
+#include "constraints/contact_groups.h"
 
 namespace cradle {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 // Of the lengths that enter: about 90 unit roundoffs, more than a height over a plane, a sum of some ten products,
 // differs between the body's frame and the world's.
 constexpr double kFrameRounding = 1e-14;
-constexpr double kSameNormal = 1e-9;  // sine between normals of one face
 
 /// The two colliders of a pair that is not against a plane, in their poses.
 struct PosedPair {
@@ -170,7 +170,7 @@ bool hasPinnedPlaces(const ContactGeometry& geometry, const ColliderPair& pair) 
 bool areOfOneFace(const std::vector<const Contact*>& contacts) {
   const Contact& first = *contacts[0];
   return std::all_of(contacts.begin(), contacts.end(), [&](const Contact* contact) {
-    return contact->pair == first.pair && contact->normal.cross(first.normal).norm() < kSameNormal;
+    return contact->pair == first.pair && areParallel(contact->normal, first.normal);
   });
 }
 

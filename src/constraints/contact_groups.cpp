@@ -9,8 +9,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kParallel = 1e-9;        // sine between normals of faces that lie on each other
-constexpr std::size_t kMostSharing = 12;  // contacts, of three boxes: more are dear to solve
+constexpr double kParallel = 1e-9;       // sine between normals of faces that lie on each other
+constexpr std::size_t kMaxSharing = 12;  // contacts, of three boxes: more are dear to solve
 
 }  // namespace
 
@@ -49,7 +49,7 @@ std::vector<ContactGroup> findContactGroups(const std::vector<ContactConstraint>
 
 bool joinWithoutLoop(const std::vector<std::pair<int, int>>& contacts, const std::vector<char>& fixed,
                      bool hasConstraints) {
-  if (contacts.size() > kMostSharing) return false;
+  if (contacts.size() > kMaxSharing) return false;
   const auto moving = [&](int body) { return body == kFixed || fixed[static_cast<std::size_t>(body)] ? kFixed : body; };
   std::set<std::pair<int, int>> pairs;
   std::set<int> bodies;

@@ -46,7 +46,7 @@ constexpr int kProximalSteps = 3;
 // By which redundant contacts give way, of the inverse mass of the heaviest: above what singular equations have of the
 // largest pivot (kSingularPivotRatio).
 constexpr double kCompliance = 1e-5;
-// Along the surfaces, of the same: what friction hardly holds would creep for long before it slides.
+// Along the surfaces, of the same: contacts that friction hardly holds would creep for long before they slide.
 constexpr double kTangentialRatio = 1e-4;
 constexpr int kMaxProximalSteps = 5;  // three or four are usual
 

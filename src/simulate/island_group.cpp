@@ -18,9 +18,9 @@ constexpr double kApartWindows = 4, kApartMargin = 0.5;
 constexpr double kMeetingMargin = 0.05;      // of a radius: bodies that come nearer within a window are taken to meet
 constexpr double kFastRatio = 0.25;          // of the bodies that move: they go farther than their radii in a window
 constexpr double kPartingEvaluations = 100;  // of equations in a window: some eight steps
-constexpr double kMostStretch = 16;          // of windows, while there is one island and nothing to part
+constexpr double kMaxStretch = 16;           // of windows, while there is one island and nothing to part
 constexpr std::size_t kManyIslands = 1000;   // of more, 3 kB each of steps' stages are freed between windows
-constexpr long kMostFrames = 100;            // in a window, each of which is kept until it counts
+constexpr long kMaxFrames = 100;             // in a window, each of which is kept until it counts
 constexpr double kTouchMargin = 1e-6;        // of a radius: far more than tolerances of contact
 
 Reach sphereAround(const Bounds& box, double radius) {
@@ -78,7 +78,7 @@ const VectorX& IslandGroup::stateAt(double time, const std::function<void(double
     if (fault_) std::rethrow_exception(fault_);
     const double length = windowLength();
     if (islands_.size() == 1 && !mayPart()) {
-      stretch_ = std::min(2 * stretch_, kMostStretch);
+      stretch_ = std::min(2 * stretch_, kMaxStretch);
     } else {
       stretch_ = 1;
       regroupFor(length);
@@ -102,10 +102,10 @@ long IslandGroup::evaluations() const {
 
 /// s
 double IslandGroup::longestWindow() const {
-  return std::min(scene_.duration, frameTime(scene_, kMostFrames));
+  return std::min(scene_.duration, frameTime(scene_, kMaxFrames));
 }
 
-/// s: the time in which three of four bodies that move go no farther than their radii, but no more than kMostFrames.
+/// s: the time in which three of four bodies that move go no farther than their radii, but no more than kMaxFrames.
 double IslandGroup::windowLength() const {
   const double longest = longestWindow();
   const double gravity = all_.mechanism.gravity.norm();

@@ -40,8 +40,7 @@ TEST(CpuStopwatch, AddsWhatOtherThreadsDoForThisOne) {
   stopwatch.start();
   threads.run([](int) { work(0.004); });
   stopwatch.stop();
-  if (threads.count() < 2) GTEST_SKIP() << "the system has no second thread";
-  EXPECT_GT(stopwatch.seconds(), 0.0079);
+  EXPECT_GT(stopwatch.seconds(), 0.00395 * threads.count());  // one, where the system has no second thread
 }
 
 TEST(CpuStopwatch, IsNeverNegative) {

@@ -19,7 +19,8 @@ namespace {
 // may take so many times that.
 constexpr int kMaxTurningSteps = 1000;
 constexpr double kTurningMargin = 3;
-constexpr double kMostTurningSteps = 10 * kMaxTurningSteps;  // of a face that slips at 1e-11; of others they cost more
+constexpr double kMaxTurningStepsOfFace =
+    10 * kMaxTurningSteps;  // of a face that slips at 1e-11; of others they cost more
 
 // Parts of the way to a stop at which the direction of sliding is taken, and the weights with which that of the stop is
 // extrapolated from them, by a parabola.
@@ -67,7 +68,7 @@ void ActiveContacts::classify(const std::vector<Contact>& touching, ConstraintSo
   for (const ContactRecord& record : records_)
     if (record.sharesLoads && record.keepsDirectionUntil > island_.time)
       maxTurningSteps_ += kTurningMargin * stepsAfterKeptDirection(record, island_.time, tolerances_);
-  maxTurningSteps_ = std::min(maxTurningSteps_, kMostTurningSteps);
+  maxTurningSteps_ = std::min(maxTurningSteps_, kMaxTurningStepsOfFace);
   recordContactEvents(previous_, records_, frames_, island_, island_.log);
   previous_.clear();
 }

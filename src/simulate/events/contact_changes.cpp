@@ -319,7 +319,7 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
 /// The fraction of the step between two points at which an event function falls to zero, on the interpolant (Illinois).
 double ContactChanges::locate(const ContactChange& change, const std::vector<ContactRecord>& records, double from,
                               double marginFrom, double to, double marginTo) {
-  // What starts at zero, and grows at first, does not end there: the start is moved to where it has grown.
+  // An event function that starts at zero, and grows at first, has its root behind that: the start is moved there.
   for (double cut = to;
        !(marginFrom > EventTolerances::kEventFunction) && cut - from > EventTolerances::kChangeInstant;) {
     cut = from + (cut - from) / 2;
