@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
+#include "collision/feature_neighbour_list.h"
+#include "collision/mesh_collider.h"
 #include "collision/separation.h"
 #include "core/error.h"
 
@@ -250,7 +253,7 @@ void BroadPhase::sortFound() {
 }
 
 void BroadPhase::sweep(ContactGeometry& geometry) {
-  geometry.pairs.clear();
+  const std::vector<ColliderPair> before = std::exchange(geometry.pairs, {});
   const auto material = [&](int surfaceA, int surfaceB) {
     return geometry.materials[static_cast<std::size_t>(surfaceA)][static_cast<std::size_t>(surfaceB)];
   };
@@ -270,6 +273,21 @@ void BroadPhase::sweep(ContactGeometry& geometry) {
   sortFound();
   for (const auto& [a, b] : sorted_)
     geometry.pairs.push_back({a, b, false, material(geometry.colliders[a].surface, geometry.colliders[b].surface)});
+  keepNeighbourLists(before, geometry);
+}
+
+/// Gives pairs of two surfaces the neighbour lists that they had in the list before, or new ones.
+void BroadPhase::keepNeighbourLists(const std::vector<ColliderPair>& before, ContactGeometry& geometry) {
+  const auto key = [](const ColliderPair& pair) { return std::tuple(!pair.againstPlane, pair.a, pair.b); };
+  auto old = before.begin();
+  for (ColliderPair& pair : geometry.pairs) {
+    if (pair.againstPlane) continue;
+    const Collider &a = geometry.colliders[pair.a], &b = geometry.colliders[pair.b];
+    if (!hasMesh(a, b) || !a.mesh || !b.mesh) continue;
+    while (old != before.end() && key(*old) < key(pair)) ++old;
+    const bool isKept = old != before.end() && key(*old) == key(pair);
+    pair.near = isKept ? old->near : std::make_shared<FeatureNeighbourList>();
+  }
 }
 
 }  // namespace cradle

@@ -54,6 +54,7 @@ class BroadPhase {
   void encloseColliders(const ContactGeometry& geometry, const PredictedMotion& predicted);
   void sort(const ContactGeometry& geometry);
   void sweep(ContactGeometry& geometry);
+  static void keepNeighbourLists(const std::vector<ColliderPair>& before, ContactGeometry& geometry);
   void compareIntervals(const ContactGeometry& geometry, std::size_t first, std::size_t last, Found& found) const;
   void compareWide(const ContactGeometry& geometry);
   void compare(const ContactGeometry& geometry, std::size_t first, std::size_t second, Found& found) const;

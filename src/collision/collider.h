@@ -11,6 +11,7 @@
 namespace cradle {
 
 struct MeshSurface;
+class FeatureNeighbourList;
 
 /// A place of a body that a joint keeps where it is on another body, or on all that is fixed: its anchor, and with a
 /// hinge all of the axis through it. Surfaces that touch each other there can neither part nor close.
@@ -81,6 +82,8 @@ struct ColliderPair {
   std::size_t a = 0, b = 0;  // indices into ContactGeometry: colliders; colliders or planes
   bool againstPlane = false;
   ContactMaterial material;
+  std::shared_ptr<FeatureNeighbourList> near =
+      {};  // of two surfaces: for all searches of the pair, by one thread at a time
 };
 
 /// Everything that may touch. Which of it is near changes as bodies move: see broad_phase.h.

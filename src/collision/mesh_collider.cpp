@@ -38,15 +38,16 @@ bool hasMesh(const Collider& a, const Collider& b) {
   return a.kind() == ColliderKind::mesh || b.kind() == ColliderKind::mesh;
 }
 
-double meshSeparation(const Collider& a, const Collider& b, const RigidTransform& aFromB, double enough) {
-  if (isRound(b) || isCylinder(b)) return meshSeparation(b, a, aFromB.inverse(), enough);
+double meshSeparation(const Collider& a, const Collider& b, const RigidTransform& aFromB, double enough,
+                      FeatureNeighbourList& near) {
+  if (isRound(b) || isCylinder(b)) return meshSeparation(b, a, aFromB.inverse(), enough, near);
   if (isRound(a)) return separationOf(roundOf(a, (aFromB * b.bodyFromMesh).inverse()), *b.mesh, enough);
   if (isCylinder(a)) return cylinderSeparation(Core(a, (aFromB * b.bodyFromMesh).inverse()), *b.mesh, enough);
-  return gapBetween(pairOf(a, b, aFromB), enough).separation;
+  return gapBetween(pairOf(a, b, aFromB), near, enough).separation;
 }
 
 std::vector<ContactPoint> meshContacts(const Collider& a, const Collider& b, const RigidTransform& aFromB,
-                                       double margin) {
+                                       double margin, FeatureNeighbourList& near) {
   std::vector<ContactPoint> contacts;
   RigidTransform aFromContacts = a.bodyFromMesh;
   if (isRound(a)) {
@@ -60,7 +61,7 @@ std::vector<ContactPoint> meshContacts(const Collider& a, const Collider& b, con
   } else if (isCylinder(b)) {
     appendCylinderContacts(Core(b, a.bodyFromMesh.inverse() * aFromB), *a.mesh, margin, contacts);
   } else {
-    appendContacts(pairOf(a, b, aFromB), margin, contacts);
+    appendContacts(pairOf(a, b, aFromB), near, margin, contacts);
   }
   for (ContactPoint& contact : contacts) {
     if (isRound(b) || isCylinder(a)) turnAround(contact);

@@ -28,26 +28,22 @@ struct ContactVisit {
   double reach() const { return std::max(margin, depth) * std::max(margin, depth); }
   bool counts(double separation) const { return separation <= margin && separation >= -depth; }
 
-  void operator()(std::uint32_t indexA, std::uint32_t indexB) {
-    const MeshSurface::Face &faceA = pair.a.faces[indexA], &faceB = pair.b.faces[indexB];
-    const FlatTriangle a = triangleOf(pair.a, indexA), b = pair.triangleOfB(indexB);
-    const CornerHeights ofA = heightsOver(b, a), ofB = heightsOver(a, b);
-    const double least = std::max(leastDistance(ofA), leastDistance(ofB));
-    if (least * least > reach()) return;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (faceA.ownsVertex[i] && counts(ofA[i]) && b.isAbove(cornerOf(a, i), kBeyondEnd) &&
-          isInNormalCone(pair.a, faceA.vertices[i], -b.normal, margin))
-        add({0, faceA.vertices[i], indexB}, {cornerOf(a, i) - ofA[i] / 2 * b.normal, -b.normal, ofA[i], 0, kFlat});
-      if (faceB.ownsVertex[i] && counts(ofB[i]) && a.isAbove(cornerOf(b, i), kBeyondEnd) &&
-          isInNormalCone(pair.b, faceB.vertices[i], -pair.turnedBack(a.normal), margin))
-        add({1, indexA, faceB.vertices[i]}, {cornerOf(b, i) - ofB[i] / 2 * a.normal, a.normal, ofB[i], kFlat, 0});
-    }
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j)
-        if (faceA.ownsEdge[i] && faceB.ownsEdge[j]) tryEdges(faceA.edges[i], faceB.edges[j]);
+  void vertexOverFace(Partner partner, std::uint32_t vertex, std::uint32_t face) {
+    const MeshSurface &own = pair.surface(partner), &other = pair.surface(otherThan(partner));
+    const FlatTriangle triangle = triangleOf(other, face);
+    const Vec3& corner = own.vertices[vertex];
+    const Vec3 seen = pair.seenFromOther(partner, corner);
+    const double height = triangle.heightOf(seen);
+    if (!counts(height) || !triangle.isAbove(seen, kBeyondEnd)) return;
+    const Vec3 ahead = -pair.turnedToOther(otherThan(partner), triangle.normal);
+    if (!isInNormalCone(own, vertex, ahead, margin)) return;
+    if (partner == Partner::a)
+      add({0, vertex, face}, {corner + height / 2 * ahead, ahead, height, 0, kFlat});
+    else
+      add({1, face, vertex}, {seen - height / 2 * triangle.normal, triangle.normal, height, kFlat, 0});
   }
 
-  void tryEdges(std::uint32_t indexA, std::uint32_t indexB) {
+  void edgeOverEdge(std::uint32_t indexA, std::uint32_t indexB) {
     const MeshSurface::Edge &edgeA = pair.a.edges[indexA], &edgeB = pair.b.edges[indexB];
     if (!edgeA.isConvex || !edgeB.isConvex) return;
     const Segment a = segmentOf(pair.a, indexA), b = pair.segmentOfB(indexB);
@@ -71,15 +67,16 @@ struct ContactVisit {
 
 }  // namespace
 
-void appendContacts(const MeshPair& pair, double margin, std::vector<ContactPoint>& contacts) {
-  const MeshGap gap = gapBetween(pair, margin);
+void appendContacts(const MeshPair& pair, FeatureNeighbourList& near, double margin,
+                    std::vector<ContactPoint>& contacts) {
+  const MeshGap gap = gapBetween(pair, near, margin);
   if (!(gap.separation <= margin)) return;
   const std::size_t first = contacts.size();
   const double size = std::min(pair.a.size, pair.b.size), rounding = MeshTolerances(size).rounding;
   double least = std::numeric_limits<double>::infinity();
   if (gap.separation > -kDeepRatio * size) {
     ContactVisit visit{pair, margin, std::max(0.0, -gap.separation) + rounding};
-    BvhPair(pair.a.tree, pair.b.tree, pair.aFromB).visitNear(visit);
+    near.visitNear(pair, visit);
     std::sort(visit.found.begin(), visit.found.end(),
               [](const Candidate& left, const Candidate& right) { return left.key < right.key; });
     for (const Candidate& candidate : visit.found) {

@@ -26,6 +26,8 @@ struct Witness {
   Feature feature = Feature::none;
   std::uint32_t index = 0;
   Vec3 point = Vec3::Zero();  // m
+
+  std::pair<Feature, std::uint32_t> key() const { return {feature, index}; }
 };
 
 /// Outward normal (unit) of a feature, in its own frame.
@@ -35,46 +37,57 @@ const Vec3& normalAt(const MeshSurface& surface, const Witness& witness) {
   return surface.vertexNormals[witness.index];
 }
 
-/// Visits pairs of triangles for the nearest features of two surfaces. It ends where an edge goes through a triangle.
-struct GapVisit {
+// Of a side: triangles reach beyond their sides by 90 unit roundoffs where edges go through them, so that none slips
+// through between two of them, whose sides are rounded each for itself.
+constexpr double kSideOverlap = 1e-14;
+
+/// Where an edge goes through a face.
+struct Crossing {
+  double part;   // 0..1 of the edge
+  double depth;  // m: of its deeper end beneath the plane of the face
+};
+
+/// Of an edge of the partner's surface and a face of the other one; none: it does not go through.
+std::optional<Crossing> crossingOf(const MeshPair& pair, Partner partner, std::uint32_t edge, std::uint32_t face) {
+  const MeshSurface& own = pair.surface(partner);
+  const FlatTriangle triangle = triangleOf(pair.surface(otherThan(partner)), face);
+  const auto& [first, last] = own.edges[edge].vertices;
+  const Vec3 from = pair.seenFromOther(partner, own.vertices[first]),
+             to = pair.seenFromOther(partner, own.vertices[last]);
+  const double one = triangle.heightOf(from), other = triangle.heightOf(to);
+  if ((one < 0) == (other < 0)) return {};
+  const double part = one / (one - other);
+  if (!triangle.isAbove(from + part * (to - from), kSideOverlap)) return {};
+  return Crossing{part, -std::min(one, other)};
+}
+
+/// Finds the nearest features of two surfaces that do not intersect, of equally near ones those of the lowest numbers.
+struct NearestFeatures {
   const MeshPair& pair;
   double distance2;  // m^2: of the nearest features so far, or the square of the reach
   Witness onA = {}, onB = {};
-  bool intersect = false;
 
-  double reach() const { return intersect ? -1 : distance2; }
+  double reach() const { return distance2; }
+  bool areFound() const { return onA.feature != Feature::none; }
 
-  void operator()(std::uint32_t indexA, std::uint32_t indexB) {
-    const MeshSurface::Face &faceA = pair.a.faces[indexA], &faceB = pair.b.faces[indexB];
-    const FlatTriangle a = triangleOf(pair.a, indexA), b = pair.triangleOfB(indexB);
-    const CornerHeights ofA = heightsOver(b, a), ofB = heightsOver(a, b);
-    const double least = std::max(leastDistance(ofA), leastDistance(ofB));
-    if (least * least > distance2) return;
-    const auto stop = [&](std::size_t, double) { intersect = true; };
-    forEachPiercing(faceA, a, ofA, b, stop);
-    forEachPiercing(faceB, b, ofB, a, stop);
-    if (intersect) return;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (faceA.ownsVertex[i] && ofA[i] * ofA[i] < distance2 && b.isAbove(cornerOf(a, i)))
-        keep({Feature::vertex, faceA.vertices[i], cornerOf(a, i)},
-             {Feature::face, indexB, cornerOf(a, i) - ofA[i] * b.normal});
-      if (faceB.ownsVertex[i] && ofB[i] * ofB[i] < distance2 && a.isAbove(cornerOf(b, i)))
-        keep({Feature::face, indexA, cornerOf(b, i) - ofB[i] * a.normal},
-             {Feature::vertex, faceB.vertices[i], cornerOf(b, i)});
-    }
-    tryEdges(faceA, faceB);
+  void vertexOverFace(Partner partner, std::uint32_t vertex, std::uint32_t face) {
+    const Vec3& corner = pair.surface(partner).vertices[vertex];
+    const Vec3 seen = pair.seenFromOther(partner, corner);
+    const FlatTriangle triangle = triangleOf(pair.surface(otherThan(partner)), face);
+    const double height = triangle.heightOf(seen);
+    if (height * height > distance2 || !triangle.isAbove(seen)) return;
+    if (partner == Partner::a)
+      keep({Feature::vertex, vertex, corner}, {Feature::face, face, corner - height * pair.turned(triangle.normal)});
+    else
+      keep({Feature::face, face, seen - height * triangle.normal}, {Feature::vertex, vertex, seen});
   }
 
-  void tryEdges(const MeshSurface::Face& faceA, const MeshSurface::Face& faceB) {
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j) {
-        if (!faceA.ownsEdge[i] || !faceB.ownsEdge[j]) continue;
-        const Segment a = segmentOf(pair.a, faceA.edges[i]), b = pair.segmentOfB(faceB.edges[j]);
-        const SegmentParts parts = nearestParts(a, b);
-        const Vec3 onA = a.at(parts.a), onB = b.at(parts.b);
-        if ((onA - onB).squaredNorm() >= distance2) continue;
-        keep(onEdge(pair.a, faceA.edges[i], parts.a, onA), onEdge(pair.b, faceB.edges[j], parts.b, onB));
-      }
+  void edgeOverEdge(std::uint32_t edgeA, std::uint32_t edgeB) {
+    const Segment a = segmentOf(pair.a, edgeA), b = pair.segmentOfB(edgeB);
+    const SegmentParts parts = nearestParts(a, b);
+    const Vec3 pointA = a.at(parts.a), pointB = b.at(parts.b);
+    if ((pointA - pointB).squaredNorm() > distance2) return;
+    keep(onEdge(pair.a, edgeA, parts.a, pointA), onEdge(pair.b, edgeB, parts.b, pointB));
   }
 
   static Witness onEdge(const MeshSurface& surface, std::uint32_t edge, double part, const Vec3& point) {
@@ -83,47 +96,59 @@ struct GapVisit {
   }
 
   void keep(const Witness& a, const Witness& b) {
-    distance2 = (a.point - b.point).squaredNorm();
+    const double found = (a.point - b.point).squaredNorm();
+    const bool isFirst = onA.feature == Feature::none || std::pair(a.key(), b.key()) < std::pair(onA.key(), onB.key());
+    if (found > distance2 || (found == distance2 && !isFirst)) return;
+    distance2 = found;
     onA = a, onB = b;
   }
 };
 
-/// Visits pairs of triangles that intersect, for the edge that is deepest inside the other solid or beyond a sheet.
+/// An overlap at an edge that goes through a face.
+struct EdgeOverlap {
+  MeshGap gap = {0, {}, {}, Vec3::Zero()};
+  std::array<std::uint32_t, 3> key = {};  // whether the edge is B's; edge; face
+
+  bool isFound() const { return gap.normal != Vec3::Zero(); }
+};
+
+/// Finds the edge that is deepest inside the other solid or beyond a sheet, of those that go through its surface; of
+/// equally deep ones that of the lowest number. Edges at which their surface goes straight on are looked at where those
+/// of its outline get out by a shorter way than that through the face that they came in by: as a cube exactly above
+/// another one, whose outlines lie in each other's sides.
 struct OverlapVisit {
   const MeshPair& pair;
-  double rounding2;  // m^2
-  MeshGap deepest;
-  MeshGap leaving = {0, {}, {}, Vec3::Zero()};     // a sheet, straight ...
-  MeshGap pastBorder = {0, {}, {}, Vec3::Zero()};  // ... or past its border
+  bool isOfOutline = true;
+  double beneath = 0;  // m: of the outline, deepest beneath a face that it goes through
+  double least = 0;    // m: edges that go straight on count if they are deeper beneath a face
+  EdgeOverlap deepest = {};
+  EdgeOverlap leaving = {};     // a sheet, straight ...
+  EdgeOverlap pastBorder = {};  // ... or past its border
 
-  double reach() const { return rounding2; }
-
-  void operator()(std::uint32_t indexA, std::uint32_t indexB) {
-    const MeshSurface::Face &faceA = pair.a.faces[indexA], &faceB = pair.b.faces[indexB];
-    const FlatTriangle a = triangleOf(pair.a, indexA), b = pair.triangleOfB(indexB);
-    const CornerHeights ofA = heightsOver(b, a), ofB = heightsOver(a, b);
-    forEachPiercing(faceA, a, ofA, b, [&](std::size_t i, double) {
-      const Segment edge = segmentOf(pair.a, faceA.edges[i]);
-      const Segment seen{pair.placedBack(edge.from), pair.turnedBack(edge.along)};
-      const Vec3 inner = pair.a.inner ? pair.placedBack(*pair.a.inner) : seen.at(0.5);
-      const EdgeDepth found = depthOf(seen, inner, pair.b, indexB);
+  void edgeThroughFace(Partner partner, std::uint32_t index, std::uint32_t face) {
+    const MeshSurface &own = pair.surface(partner), &other = pair.surface(otherThan(partner));
+    const auto crossing = crossingOf(pair, partner, index, face);
+    if (!crossing || (!isOfOutline && crossing->depth <= least)) return;
+    if (isOfOutline) beneath = std::max(beneath, crossing->depth);
+    const Segment edge = segmentOf(own, index);
+    const Vec3 from = pair.seenFromOther(partner, edge.from);
+    const Segment seen{from, pair.turnedToOther(partner, edge.along)};
+    const Vec3 inner = own.inner ? pair.seenFromOther(partner, *own.inner) : seen.at(0.5);
+    const EdgeDepth found = depthOf(seen, crossing->part, inner, other, face);
+    EdgeOverlap overlap{{-found.depth, found.deepest + found.depth * found.normal, found.deepest, found.normal},
+                        {partner == Partner::a ? 0u : 1u, index, face}};
+    if (partner == Partner::a) {
       const Vec3 normal = pair.turned(found.normal), point = pair.placed(found.deepest);
-      keep({-found.depth, point, point + found.depth * normal, -normal}, pair.a.edges[faceA.edges[i]], pair.b.isSheet);
-    });
-    forEachPiercing(faceB, b, ofB, a, [&](std::size_t i, double) {
-      const Segment edge = pair.segmentOfB(faceB.edges[i]);
-      const Vec3 inner = pair.b.inner ? pair.placed(*pair.b.inner) : edge.at(0.5);
-      const EdgeDepth found = depthOf(edge, inner, pair.a, indexA);
-      keep({-found.depth, found.deepest + found.depth * found.normal, found.deepest, found.normal},
-           pair.b.edges[faceB.edges[i]], pair.a.isSheet);
-    });
+      overlap.gap = {-found.depth, point, point + found.depth * normal, -normal};
+    }
+    keep(overlap, own.edges[index], other.isSheet);
   }
 
   /// The depth of an edge that goes through a face. Out of a sheet there are two ways: towards the side on which the
   /// solid's inner point is (if none is known, most of the edge), or towards the other side. The latter is taken if it
   /// is much shorter: over a steep crease, much of a solid is behind the planes of faces that it barely touches.
-  static EdgeDepth depthOf(const Segment& edge, const Vec3& inner, const MeshSurface& other, std::uint32_t face) {
-    const double part = partAt(edge, face, other);
+  static EdgeDepth depthOf(const Segment& edge, double part, const Vec3& inner, const MeshSurface& other,
+                           std::uint32_t face) {
     if (!other.isSheet) return depthOfEdge(other, edge, part, face);
     const auto triangles = static_cast<std::uint32_t>(other.faces.size() / 2);
     const std::uint32_t back = face < triangles ? face + triangles : face - triangles;
@@ -133,33 +158,37 @@ struct OverlapVisit {
     return away.depth < kBarelyPassedRatio * towards.depth ? away : towards;
   }
 
+  bool isFound() const { return deepest.isFound() || leaving.isFound(); }
+
+  /// Whether no way out of the outline is shorter than that by which it came in. If one is, all further visits are of
+  /// edges at which surfaces go straight on.
+  bool isOutlineEnough() {
+    isOfOutline = false;
+    least = -std::min(deepest.gap.separation, leaving.gap.separation);
+    return beneath <= (1 + kBarelyPassedRatio) * least;
+  }
+
   /// The deepest of all; of a sheet whose border is barely inside the solid, the way past that border.
   MeshGap wayOut() const {
-    if (leaving.normal == Vec3::Zero()) return deepest;
-    if (pastBorder.normal != Vec3::Zero() && pastBorder.separation > kBarelyPassedRatio * leaving.separation)
-      return pastBorder;
-    return deepest.separation < leaving.separation ? deepest : leaving;
+    if (!leaving.isFound()) return deepest.gap;
+    if (pastBorder.isFound() && pastBorder.gap.separation > kBarelyPassedRatio * leaving.gap.separation)
+      return pastBorder.gap;
+    return deepest.gap.separation < leaving.gap.separation ? deepest.gap : leaving.gap;
   }
 
-  /// The part (0..1) of an edge at which it goes through a face.
-  static double partAt(const Segment& edge, std::uint32_t face, const MeshSurface& surface) {
-    const FlatTriangle triangle = triangleOf(surface, face);
-    const double slope = triangle.normal.dot(edge.along);
-    return slope != 0 ? std::clamp(-triangle.heightOf(edge.from) / slope, 0.0, 1.0) : 0;
+  static void keepDeeper(const EdgeOverlap& found, EdgeOverlap& kept) {
+    const auto depth = [](const EdgeOverlap& overlap) { return std::pair(overlap.gap.separation, overlap.key); };
+    if (!kept.isFound() || depth(found) < depth(kept)) kept = found;
   }
 
-  static void keepDeeper(const MeshGap& found, MeshGap& kept) {
-    if (found.separation < kept.separation || kept.normal == Vec3::Zero()) kept = found;
-  }
-
-  void keep(const MeshGap& found, const MeshSurface::Edge& edge, bool isPastSheet) {
+  void keep(const EdgeOverlap& found, const MeshSurface::Edge& edge, bool isPastSheet) {
     keepDeeper(found, isPastSheet ? leaving : deepest);
     if (edge.isBorder) keepDeeper(found, pastBorder);
   }
 };
 
 /// The gap of two surfaces that do not intersect, from their nearest points.
-MeshGap gapOf(const MeshPair& pair, const GapVisit& nearest) {
+MeshGap gapOf(const MeshPair& pair, const NearestFeatures& nearest) {
   const Witness &onA = nearest.onA, &onB = nearest.onB;
   const Vec3 between = onB.point - onA.point;
   const auto facing = [](const MeshSurface& surface, const Vec3& outward, const Vec3& way) {
@@ -205,34 +234,32 @@ void keepPartsInside(const MeshPair& pair, MeshGap& gap) {
 
 /// The nearest features within `enough` (m). Short reaches come first: most solids of a query are near, and the cost of
 /// a search grows with its reach.
-GapVisit searchNearest(const MeshPair& pair, const BvhPair& trees, double enough) {
+NearestFeatures searchNearest(const MeshPair& pair, FeatureNeighbourList& near, double enough) {
   double reach = kFirstSearchReach * std::min(pair.a.size, pair.b.size);
   while (true) {
     const double bound = std::min(reach, enough);
-    GapVisit visit{pair, bound * bound};
-    trees.visitNear(visit);
-    if (visit.intersect || visit.onA.feature != Feature::none || bound >= enough) return visit;
+    NearestFeatures nearest{pair, bound * bound};
+    near.visitNear(pair, nearest);
+    if (nearest.areFound() || bound >= enough) return nearest;
     reach *= kSearchReachGrowth;
   }
 }
 
 }  // namespace
 
-MeshGap gapBetween(const MeshPair& pair, double enough) {
-  const BvhPair trees(pair.a.tree, pair.b.tree, pair.aFromB);
-  const double size = std::min(pair.a.size, pair.b.size);
-  const GapVisit nearest = searchNearest(pair, trees, std::max(enough, kMinReachRatio * size));
-  if (nearest.intersect) {
-    OverlapVisit overlap{pair, kMinReachRatio * size * kMinReachRatio * size, {}};
-    overlap.deepest.separation = 0;
-    trees.visitNear(overlap);
+MeshGap gapBetween(const MeshPair& pair, FeatureNeighbourList& near, double enough) {
+  OverlapVisit overlap{pair};
+  near.visitCrossings(pair, FeatureNeighbourList::Edges::bent, overlap);
+  if (overlap.isFound()) {
+    if (!overlap.isOutlineEnough()) near.visitCrossings(pair, FeatureNeighbourList::Edges::straight, overlap);
     return overlap.wayOut();
   }
+  const double size = std::min(pair.a.size, pair.b.size);
+  const NearestFeatures nearest = searchNearest(pair, near, std::max(enough, kMinReachRatio * size));
   MeshGap gap;
-  const bool isNear = nearest.onA.feature != Feature::none;
-  if (isNear) gap = gapOf(pair, nearest);
+  if (nearest.areFound()) gap = gapOf(pair, nearest);
   // Where nothing is near, or a part other than the nearest one may be inside.
-  if (!isNear || pair.a.parts.size() + pair.b.parts.size() > 2) keepPartsInside(pair, gap);
+  if (!nearest.areFound() || pair.a.parts.size() + pair.b.parts.size() > 2) keepPartsInside(pair, gap);
   return gap;
 }
 

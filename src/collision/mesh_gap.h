@@ -1,6 +1,6 @@
 #pragma once
 
-#include "collision/mesh_pair.h"
+#include "collision/feature_neighbour_list.h"
 
 namespace cradle {
 
@@ -16,7 +16,8 @@ struct MeshGap {
 /// exact while that is less than the triangles' size, continuous through 0 (to 1e-14 of the sizes), and never positive.
 /// Of a sheet and a solid that it goes through: minus the way out to the side on which more of the solid is, or past
 /// the sheet's border. One inside the other: minus the distance of the surfaces. Separations above `enough` (m) are not
-/// looked for: then infinite. O(log triangles) for pairs near in few places.
-MeshGap gapBetween(const MeshPair& pair, double enough);
+/// looked for: then infinite. `near` is kept from call to
+/// call with these surfaces; it changes nothing but the cost. O(log triangles) for pairs near in few places.
+MeshGap gapBetween(const MeshPair& pair, FeatureNeighbourList& near, double enough);
 
 }  // namespace cradle

@@ -7,6 +7,13 @@
 
 namespace cradle {
 
+/// One of the two surfaces of a pair.
+enum class Partner : std::uint8_t { a, b };
+
+inline Partner otherThan(Partner partner) {
+  return partner == Partner::a ? Partner::b : Partner::a;
+}
+
 /// Two surfaces in a relative pose: all as seen from A's frame.
 class MeshPair {
  public:
@@ -18,6 +25,15 @@ class MeshPair {
   Vec3 turned(const Vec3& directionOfB) const { return rotation_ * directionOfB; }
   Vec3 turnedBack(const Vec3& direction) const { return rotation_.transpose() * direction; }
   Vec3 placedBack(const Vec3& point) const { return rotation_.transpose() * (point - shift_); }
+
+  const MeshSurface& surface(Partner partner) const { return partner == Partner::a ? a : b; }
+  /// A point and a direction in the frame of one surface as seen from that of the other.
+  Vec3 seenFromOther(Partner partner, const Vec3& point) const {
+    return partner == Partner::a ? placedBack(point) : placed(point);
+  }
+  Vec3 turnedToOther(Partner partner, const Vec3& way) const {
+    return partner == Partner::a ? turnedBack(way) : turned(way);
+  }
 
   FlatTriangle triangleOfB(std::uint32_t face) const {
     const FlatTriangle own = triangleOf(b, face);
@@ -36,33 +52,14 @@ class MeshPair {
   Vec3 shift_;
 };
 
-/// Heights (m) of a triangle's corners over another one's plane.
-using CornerHeights = std::array<double, 3>;
-
-inline CornerHeights heightsOver(const FlatTriangle& plane, const FlatTriangle& corners) {
-  return {plane.heightOf(corners.a), plane.heightOf(corners.b), plane.heightOf(corners.c)};
-}
-
-/// A lower bound (m) of the distance of a triangle from one in the plane that its corners' heights are over.
-inline double leastDistance(const CornerHeights& heights) {
-  const auto [low, high] = std::minmax({heights[0], heights[1], heights[2]});
-  return std::max({0.0, low, -high});
-}
-
-/// Calls pierces(i, part) for the sides i that the face owns and that go through `through`, given its corners' heights.
-template <class Pierces>
-void forEachPiercing(const MeshSurface::Face& face, const FlatTriangle& triangle, const CornerHeights& heights,
-                     const FlatTriangle& through, const Pierces& pierces) {
-  // Of a side: triangles reach beyond their sides by 90 unit roundoffs here, so that no edge slips through between two
-  // of them, whose sides are rounded each for itself.
-  constexpr double kSideOverlap = 1e-14;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t next = (i + 1) % 3;
-    if (!face.ownsEdge[i] || !((heights[i] < 0) != (heights[next] < 0))) continue;
-    const double part = heights[i] / (heights[i] - heights[next]);
-    const Vec3 &from = cornerOf(triangle, i), &to = cornerOf(triangle, next);
-    if (through.isAbove(from + part * (to - from), kSideOverlap)) pierces(i, part);
-  }
+/// A lower bound (m) of the distance of two triangles: of each from the plane of the other.
+inline double leastDistance(const FlatTriangle& one, const FlatTriangle& other) {
+  const auto fromPlane = [](const FlatTriangle& plane, const FlatTriangle& corners) {
+    const auto [low, high] =
+        std::minmax({plane.heightOf(corners.a), plane.heightOf(corners.b), plane.heightOf(corners.c)});
+    return std::max({0.0, low, -high});
+  };
+  return std::max(fromPlane(one, other), fromPlane(other, one));
 }
 
 }  // namespace cradle

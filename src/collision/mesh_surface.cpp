@@ -19,6 +19,8 @@ namespace {
 // Of a triangle's length: two triangles that bend by less lie in one plane. The vertices of flat faces are rounded to a
 // unit roundoff of the mesh, whose triangles may be a millionth of it.
 constexpr double kFlatRatio = 1e-9;
+// Of a triangle's length: 90 unit roundoffs; what bends by less is straight to rounding.
+constexpr double kStraightRatio = 1e-14;
 // Of the weighted mean of a vertex's normals (rad): both sides of a sheet cancel in a shorter one, which has no
 // direction.
 constexpr double kMinMeanNormal = 1e-6;
@@ -99,6 +101,9 @@ MeshSurface::Edge edgeOf(const Seam& seam, const MeshSurface& surface) {
   edge.normal = (face.normal + next.normal).normalized();
   edge.isConvex = face.normal.dot(acrossNext) < -kFlatRatio * acrossNext.norm() ||
                   next.normal.dot(across) < -kFlatRatio * across.norm();
+  edge.isBent = !(face.normal.dot(next.normal) > 0) ||
+                std::abs(face.normal.dot(acrossNext)) > kStraightRatio * acrossNext.norm() ||
+                std::abs(next.normal.dot(across)) > kStraightRatio * across.norm();
   return edge;
 }
 
@@ -166,7 +171,8 @@ void addNeighbours(MeshSurface& surface) {
   for (std::size_t i = 0; i < surface.vertices.size(); ++i) surface.firstNeighbour[i + 1] += surface.firstNeighbour[i];
   std::vector<std::uint32_t> next = surface.firstNeighbour;
   surface.neighbours.resize(2 * surface.edges.size());
-  for (const auto& [ends, across, normal, isConvex, faces, isBorder] : surface.edges) {
+  for (const MeshSurface::Edge& edge : surface.edges) {
+    const auto& ends = edge.vertices;
     surface.neighbours[next[ends[0]]++] = ends[1];
     surface.neighbours[next[ends[1]]++] = ends[0];
   }

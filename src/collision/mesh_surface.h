@@ -28,6 +28,7 @@ struct MeshSurface {
     bool isConvex;                            // the solid's angle is below 180 degrees: other edges can touch it
     std::array<std::uint32_t, 2> faces = {};  // its two triangles
     bool isBorder = false;                    // of a sheet: both are one triangle's sides
+    bool isBent = true;                       // its triangles are not in one plane, to rounding
   };
 
   std::vector<Vec3> vertices;  // m

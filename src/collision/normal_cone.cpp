@@ -25,6 +25,14 @@ bool isInNormalCone(const MeshSurface& surface, std::uint32_t vertex, const Vec3
   return true;
 }
 
+bool mayBeInNormalCone(const MeshSurface& surface, std::uint32_t vertex, const Vec3& ahead, double tilt) {
+  for (std::uint32_t i = surface.firstNeighbour[vertex]; i < surface.firstNeighbour[vertex + 1]; ++i) {
+    const Vec3 side = surface.vertices[surface.neighbours[i]] - surface.vertices[vertex];
+    if (ahead.dot(side) > (kMaxTilt + tilt) * side.norm()) return false;
+  }
+  return true;
+}
+
 bool isInNormalCone(const MeshSurface& surface, const MeshSurface::Edge& edge, const Vec3& ahead, double margin) {
   // At a sheet's border a direction straight over one of its sides is in the cone, too.
   if (!edge.isConvex || edge.normal.dot(ahead) <= (edge.isBorder ? -kMinTilt : 0)) return false;

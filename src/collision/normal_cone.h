@@ -12,6 +12,9 @@ namespace cradle {
 
 bool isInNormalCone(const MeshSurface& surface, std::uint32_t vertex, const Vec3& ahead, double margin);
 
+/// Whether that may be so with any margin for a direction that differs from `ahead` by at most `tilt` (rad).
+bool mayBeInNormalCone(const MeshSurface& surface, std::uint32_t vertex, const Vec3& ahead, double tilt);
+
 /// `ahead` is perpendicular to the edge.
 bool isInNormalCone(const MeshSurface& surface, const MeshSurface::Edge& edge, const Vec3& ahead, double margin);
 

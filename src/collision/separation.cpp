@@ -6,6 +6,7 @@
 
 #include "collision/contact_reduction.h"
 #include "collision/core_separation.h"
+#include "collision/feature_neighbour_list.h"
 #include "collision/impact_search_tolerances.h"
 #include "collision/manifold.h"
 #include "collision/mesh_collider.h"
@@ -23,6 +24,7 @@ constexpr double kFrameRounding = 1e-14;
 struct PosedPair {
   const Collider &a, &b;
   const RigidTransform &worldFromA, &worldFromB;
+  FeatureNeighbourList* near = nullptr;  // kept with the pair
 };
 
 ContactPoint mirrored(const ContactPoint& contact) {
@@ -56,7 +58,7 @@ ContactPoint sphereOnSphere(const PosedPair& pair) {
 ContactPoint sphereContact(const PosedPair& pair) {
   if (pair.a.isSphere() && pair.b.isSphere()) return sphereOnSphere(pair);
   if (pair.a.isSphere()) return sphereOnOther(pair);
-  return mirrored(sphereOnOther({pair.b, pair.a, pair.worldFromB, pair.worldFromA}));
+  return mirrored(sphereOnOther({pair.b, pair.a, pair.worldFromB, pair.worldFromA, pair.near}));
 }
 
 bool hasSphere(const PosedPair& pair) {
@@ -89,7 +91,9 @@ void appendOfCores(const PosedPair& pair, double margin, std::vector<ContactPoin
 }
 
 void appendOfMeshes(const PosedPair& pair, double margin, std::vector<ContactPoint>& points) {
-  points = meshContacts(pair.a, pair.b, pair.worldFromA.inverse() * pair.worldFromB, margin);
+  FeatureNeighbourList none;
+  points =
+      meshContacts(pair.a, pair.b, pair.worldFromA.inverse() * pair.worldFromB, margin, pair.near ? *pair.near : none);
   placeInWorld(pair, points);
 }
 
@@ -120,7 +124,7 @@ std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const C
     appendOnPlane(a, worldFromA, geometry.planes[pair.b], near, margin, points);
     return points;
   }
-  const PosedPair both{a, geometry.colliders[pair.b], worldFromA, worldFromB};
+  const PosedPair both{a, geometry.colliders[pair.b], worldFromA, worldFromB, pair.near.get()};
   if (hasMesh(both.a, both.b))
     appendOfMeshes(both, margin, points);
   else if (hasSphere(both))
@@ -241,8 +245,11 @@ double separation(const ContactGeometry& geometry, const ColliderPair& pair, std
     if (a.kind() == ColliderKind::cylinder) return rimSeparation(a, feature, worldFromA, plane);
     return sphereOnPlane(worldFromA * a.points[feature], a.radius, plane).separation;
   }
-  const PosedPair both{a, geometry.colliders[pair.b], worldFromA, worldFromB};
-  if (hasMesh(both.a, both.b)) return meshSeparation(both.a, both.b, worldFromA.inverse() * worldFromB, enough);
+  const PosedPair both{a, geometry.colliders[pair.b], worldFromA, worldFromB, pair.near.get()};
+  if (hasMesh(both.a, both.b)) {
+    FeatureNeighbourList none;
+    return meshSeparation(both.a, both.b, worldFromA.inverse() * worldFromB, enough, both.near ? *both.near : none);
+  }
   return hasSphere(both) ? sphereContact(both).separation : coreSeparation(both);
 }
 

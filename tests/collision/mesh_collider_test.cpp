@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "collision/feature_neighbour_list.h"
 #include "collision/mesh_surface.h"
 #include "math/rotation.h"
 #include "mesh/mass_properties.h"
@@ -40,13 +41,19 @@ struct OverMesh {
     fromMesh = meshFromBody.inverse() * mesh.bodyFromMesh.inverse();
   }
   double separation(bool isMeshA, double enough = kInfinite) const {
-    return isMeshA ? meshSeparation(mesh, collider, fromMesh.inverse(), enough)
-                   : meshSeparation(collider, mesh, fromMesh, enough);
+    FeatureNeighbourList none;
+    return isMeshA ? meshSeparation(mesh, collider, fromMesh.inverse(), enough, none)
+                   : meshSeparation(collider, mesh, fromMesh, enough, none);
+  }
+  /// In the frame of A.
+  std::vector<ContactPoint> own(bool isMeshA, double margin) const {
+    FeatureNeighbourList none;
+    return isMeshA ? meshContacts(mesh, collider, fromMesh.inverse(), margin, none)
+                   : meshContacts(collider, mesh, fromMesh, margin, none);
   }
   /// In the frame of the mesh, with the normal from the mesh to the shape.
   std::vector<ContactPoint> contacts(bool isMeshA, double margin) const {
-    std::vector<ContactPoint> found = isMeshA ? meshContacts(mesh, collider, fromMesh.inverse(), margin)
-                                              : meshContacts(collider, mesh, fromMesh, margin);
+    std::vector<ContactPoint> found = own(isMeshA, margin);
     const RigidTransform back = isMeshA ? mesh.bodyFromMesh.inverse() : (fromMesh * mesh.bodyFromMesh).inverse();
     for (ContactPoint& contact : found) {
       contact.point = back * contact.point, contact.normal = back.rotation * contact.normal;
@@ -90,8 +97,7 @@ TEST(MeshCollider, OfASphereOverAnEdgeTellsTheEdge) {
     ASSERT_EQ(contacts.size(), 1u);
     EXPECT_LT((contacts[0].normal - out).norm(), kAskewRounding);
     const RigidTransform back = isMeshA ? at.mesh.bodyFromMesh : at.fromMesh * at.mesh.bodyFromMesh;
-    const std::vector<ContactPoint> own = isMeshA ? meshContacts(at.mesh, at.collider, at.fromMesh.inverse(), 0.02)
-                                                  : meshContacts(at.collider, at.mesh, at.fromMesh, 0.02);
+    const std::vector<ContactPoint> own = at.own(isMeshA, 0.02);
     EXPECT_NEAR(std::abs(own[0].edge.dot(back.rotation * Vec3::UnitZ())), 1, kAskewRounding);
   }
 }

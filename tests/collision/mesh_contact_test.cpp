@@ -17,7 +17,8 @@ namespace {
 std::vector<ContactPoint> contactsOf(const MeshSurface& a, const MeshSurface& b, const RigidTransform& aFromB,
                                      double margin) {
   std::vector<ContactPoint> contacts;
-  appendContacts(MeshPair(a, b, aFromB), margin, contacts);
+  FeatureNeighbourList none;
+  appendContacts(MeshPair(a, b, aFromB), none, margin, contacts);
   return contacts;
 }
 
@@ -114,9 +115,10 @@ TEST(MeshContact, DeepestContactIsTheGap) {
   for (int i = 0; i < 60; ++i) {
     RigidTransform pose{random.turn(), 5 * random.direction()};
     const Vec3 way = (Vec3(1, 0.5, 0.5) - pose.translation).normalized();
+    FeatureNeighbourList near;
     for (int k = 0; k < 200; ++k)
-      pose.translation += (gapBetween(MeshPair(prism, box, pose), 10).separation - 1e-10) * way;
-    const MeshGap gap = gapBetween(MeshPair(prism, box, pose), 10);
+      pose.translation += (gapBetween(MeshPair(prism, box, pose), near, 10).separation - 1e-10) * way;
+    const MeshGap gap = gapBetween(MeshPair(prism, box, pose), near, 10);
     const auto contacts = contactsOf(prism, box, pose, 1e-6);
     ASSERT_EQ(contacts.size(), 1u) << i;
     EXPECT_NEAR(contacts[0].separation, gap.separation, kContactRounding);

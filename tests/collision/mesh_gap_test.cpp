@@ -90,8 +90,13 @@ struct MeshSolid {
   explicit MeshSolid(const TriangleMesh& given) : mesh(given), surface(surfaceOf(given)) {}
 };
 
+MeshGap gapOf(const MeshSurface& a, const MeshSurface& b, const RigidTransform& aFromB, double enough = INFINITY) {
+  FeatureNeighbourList none;
+  return gapBetween(MeshPair(a, b, aFromB), none, enough);
+}
+
 MeshGap gapOf(const MeshSolid& a, const MeshSolid& b, const RigidTransform& aFromB, double enough = INFINITY) {
-  return gapBetween(MeshPair(a.surface, b.surface, aFromB), enough);
+  return gapOf(a.surface, b.surface, aFromB, enough);
 }
 
 std::vector<MeshSolid> sampleSolids(RandomPoses& random) {
@@ -250,8 +255,8 @@ TEST(MeshGap, OverASheetIsThatOverASolidWithTheSameTop) {
     ASSERT_LT(touch, 3) << i;
     for (const double beyond : {-1e-6, 1e-11, 1e-9, 1e-7, 1e-5}) {
       const RigidTransform pose{start.rotation, start.translation + (touch + beyond) * way};
-      const MeshGap expected = gapOf(solid, box, pose), gap = gapBetween(MeshPair(sheet, box.surface, pose), INFINITY),
-                    turned = gapBetween(MeshPair(box.surface, sheet, pose.inverse()), INFINITY);
+      const MeshGap expected = gapOf(solid, box, pose), gap = gapOf(sheet, box.surface, pose),
+                    turned = gapOf(box.surface, sheet, pose.inverse());
       const double tolerance = 1e-2 * std::abs(beyond) + kGapRounding;
       EXPECT_NEAR(gap.separation, expected.separation, tolerance) << i << " " << beyond;
       EXPECT_NEAR(turned.separation, expected.separation, tolerance) << i << " " << beyond;

@@ -67,7 +67,7 @@ void StepContacts::resolveImpacts(double time, const VectorX& before, LimitEvent
 
 /// Contacts of this instant, and those that close so soon after it that they take part in its impact.
 void StepContacts::findSimultaneous(const VectorX& state) {
-  findTouching(state, tolerances().margin());
+  findTouching(state, tolerances().margin(), touching_);
   double fastest = 0;
   for (const Contact& contact : touching_) fastest = std::max(fastest, closingSpeed(contact, state));
   const double near = tolerances().simultaneousGap(fastest, timeStep_);
@@ -78,7 +78,6 @@ void StepContacts::findSimultaneous(const VectorX& state) {
 /// step, also where other contacts make the bodies faster.
 void StepContacts::findWithinReach(const VectorX& before, const VectorX& state, double length) {
   std::vector<double> displacements;  // m, of each body within the step
-  double farthest = 0;
   for (std::size_t i = 0; i < assembly_.radii.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
     double speed = 0;
@@ -86,15 +85,12 @@ void StepContacts::findWithinReach(const VectorX& before, const VectorX& state, 
       speed = std::max(
           speed, linearVelocity(*moment, body).norm() + assembly_.radii[i] * angularVelocity(*moment, body).norm());
     displacements.push_back(kReach * speed * length + kRestingReachRatio * assembly_.radii[i]);
-    farthest = std::max(farthest, displacements.back());
   }
-  findTouching(before, 2 * farthest);
-  std::erase_if(touching_, [&](const Contact& contact) {
-    double displacement = 0;
-    for (const int body : {contact.bodyA, contact.bodyB})
-      if (body != kFixed) displacement += displacements[static_cast<std::size_t>(body)];
-    return contact.separation > displacement;
-  });
+  const auto displacementOf = [&](int body) {
+    return body == kFixed ? 0 : displacements[static_cast<std::size_t>(body)];
+  };
+  findTouching(
+      before, [&](int bodyA, int bodyB) { return displacementOf(bodyA) + displacementOf(bodyB); }, touching_);
 }
 
 /// The contacts of a step: of pairs that touch when it begins. Pairs that are apart are left to the search for impacts,
@@ -215,17 +211,25 @@ void StepContacts::letSleep(double time, const std::vector<Contact>& contacts, V
     log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
 }
 
-/// Contacts of this instant between bodies of which one moves, which can open or close as far as constraints let them.
-void StepContacts::findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) {
-  findContacts(assembly_.geometry, state, margin, touching);
-  std::erase_if(touching, [this](const Contact& contact) {
-    const bool aLies = contact.bodyA == kFixed || resting_.isResting(contact.bodyA);
-    const bool bLies = contact.bodyB == kFixed || resting_.isResting(contact.bodyB);
-    return aLies && bLies;
-  });
+/// Contacts of this instant between bodies of which one moves, which can open or close as far as constraints let them,
+/// with separations of at most marginOf(bodyA, bodyB) (m).
+void StepContacts::findTouching(const VectorX& state, const std::function<double(int, int)>& marginOf,
+                                std::vector<Contact>& touching) {
+  const ContactGeometry& geometry = assembly_.geometry;
+  const auto lies = [&](int body) { return body == kFixed || resting_.isResting(body); };
+  touching.clear();
+  for (std::size_t pair = 0; pair < geometry.pairs.size(); ++pair) {
+    const int bodyA = geometry.colliders[geometry.pairs[pair].a].body, bodyB = bodyBOf(geometry, geometry.pairs[pair]);
+    if (!lies(bodyA) || !lies(bodyB)) appendContacts(geometry, pair, state, marginOf(bodyA, bodyB), touching);
+  }
   if (touching.empty() || !solver_.hasConstraints()) return;
   solver_.factorize(state);
   eraseImmobile(ImpulseResponse(assembly_.mechanism.bodies, solver_), state, touching);
+}
+
+void StepContacts::findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) {
+  findTouching(
+      state, [&](int, int) { return margin; }, touching);
 }
 
 void StepContacts::wakeTouched(double time, const VectorX& state) {

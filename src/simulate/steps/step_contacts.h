@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "constraints/disjoint_sets.h"
@@ -61,7 +62,8 @@ class StepContacts {
   const StepTolerances& tolerances() const { return stepping_.tolerances(); }
 
  private:
-  void findTouching(const VectorX& state, double margin) { findTouching(state, margin, touching_); }
+  void findTouching(const VectorX& state, const std::function<double(int, int)>& marginOf,
+                    std::vector<Contact>& touching);
   void findTouching(const VectorX& state, double margin, std::vector<Contact>& touching);
   void loosenShortMomentArms(const VectorX& state, std::vector<Contact>& contacts);
   void correctPenetrations(const LimitEvents& ropes, VectorX& state);
