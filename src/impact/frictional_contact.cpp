@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "impact/contact_admm.h"
 #include "impact/contact_interior_point.h"
@@ -49,6 +50,9 @@ constexpr double kCompliance = 1e-5;
 // Along the surfaces, of the same: contacts that friction hardly holds would creep for long before they slide.
 constexpr double kTangentialRatio = 1e-4;
 constexpr int kMaxProximalSteps = 5;  // three or four are usual
+// Of what the step before left, and of the fastest velocity: by rounding, velocities are not quite those of one body;
+// contacts then creep at a speed that no further step reduces.
+constexpr double kCreepRatio = 0.5, kMaxCreep = 1e-9;
 
 /// A search for a solution, in the operator's scaled units; residuals and tolerances are in m/s.
 class Search {
@@ -305,27 +309,29 @@ ContactSolution solveRedundant(const MatrixX& G, const VectorX& g, const std::ve
   MatrixX yielding = G;
   yielding.diagonal() += compliance;
   const DelassusOperator op = operatorOf(yielding);
-  const double rounding = kProductRounding * g.cwiseAbs().maxCoeff();
+  const double fastest = g.cwiseAbs().maxCoeff(), rounding = kProductRounding * fastest;
   const auto normals = Eigen::seq(2, Eigen::last, 3);
   ContactSolution solution;
   VectorX unloaded = VectorX::Zero(g.size());  // impulses to which contacts have given way; < 0: they are as far apart
   WarmStart start{near.size() > 0 ? near : unloaded, unloaded, 0};
   double left = INFINITY;  // m/s: by which contacts give way
+  bool isEnough = false;
   long iterations = 0;
-  for (int step = 0; step < kMaxProximalSteps && left > rounding; ++step) {
+  for (int step = 0; step < kMaxProximalSteps && !isEnough; ++step) {
     solution = Search(op, g - compliance.cwiseProduct(unloaded), frictions, 0, directions, true).run(start);
     iterations += solution.iterations;
     if (!solution.converged) return solution;
     const VectorX velocities = G * solution.impulses + g;
     VectorX given = solution.impulses;
     given(normals) = unloaded(normals) - velocities(normals).cwiseQuotient(compliance(normals));
-    left = 0;
+    const double before = std::exchange(left, 0);
     for (Index i = 0; i < g.size(); ++i)
       if (solution.impulses[3 * (i / 3) + 2] > 0)
         left = std::max(left, compliance[i] * std::abs(given[i] - unloaded[i]));
+    isEnough = left <= rounding || (left <= kMaxCreep * fastest && left > kCreepRatio * before);
     unloaded = given;
   }
-  if (left > rounding) {  // friction is at its limit nearly everywhere
+  if (!isEnough) {  // friction is at its limit nearly everywhere
     solution = Search(operatorOf(G), g, frictions, 0, directions).run(start);
     solution.converged = solution.converged && solution.iterations == 0;
   }

@@ -150,23 +150,20 @@ ContactSolution FrictionalImpact::solve(const MatrixX& matrix, const VectorX& fr
 ImpactResult FrictionalImpact::impactWith(const VectorX& velocities, const VectorX& opening,
                                           double frictionFactor) const {
   std::vector<double> frictions;
-  bool haveTwoFrictions = false;
-  for (const Index i : members_) {
-    const ContactMaterial& material = impacts_[static_cast<std::size_t>(i)].material;
-    frictions.push_back(material.staticFriction);
-    haveTwoFrictions = haveTwoFrictions || material.staticFriction != material.dynamicFriction;
-  }
+  for (const Index i : members_) frictions.push_back(impacts_[static_cast<std::size_t>(i)].material.staticFriction);
   const MatrixX matrix = delassus_.matrix()(rows_, rows_);
   const VectorX before = velocities(rows_);
   VectorX free = before;
   free(Eigen::seq(2, Eigen::last, 3)) -= opening;
   ContactSolution solution = solve(matrix, free, frictions, frictionFactor);
-  if (haveTwoFrictions) {
-    for (std::size_t k = 0; k < members_.size(); ++k)
-      if (solution.velocities.segment<2>(3 * static_cast<Index>(k)).norm() > tolerances_.sliding)
-        frictions[k] = impacts_[static_cast<std::size_t>(members_[k])].material.dynamicFriction;
-    solution = solve(matrix, free, frictions, frictionFactor);
+  bool isOther = false;
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const double sliding = impacts_[static_cast<std::size_t>(members_[k])].material.dynamicFriction;
+    if (!(solution.velocities.segment<2>(3 * static_cast<Index>(k)).norm() > tolerances_.sliding)) continue;
+    isOther = isOther || sliding != frictions[k];
+    frictions[k] = sliding;
   }
+  if (isOther) solution = solve(matrix, free, frictions, frictionFactor);
   ImpactResult result;
   result.frictionFactor = frictionFactor;
   result.impulses = solution.impulses;
