@@ -233,6 +233,7 @@ std::optional<ContactChange> ContactChanges::first(const std::vector<ContactReco
     }
     std::optional<ContactChange> found = firstBetween(records, from, to);
     if (!found && k > 1) found = firstInDip(records, from - 1.0 / samples, from, to);
+    if (found) found = firstBefore(records, from, *found);
     if (leaving && leaving->fraction <= (found ? found->fraction : to))
       return ContactChange{Kind::leave, leaving->fraction, leaving->record, found ? found->latest : to};
     if (found) return found;
@@ -274,9 +275,34 @@ std::optional<ContactChange> ContactChanges::firstInDip(const std::vector<Contac
   return std::nullopt;
 }
 
+/// The first change between a point of the step, whose event functions are before_, and a change that was found behind
+/// it, or this one: an event function may fall below zero before that, and be above it again at the next point.
+ContactChange ContactChanges::firstBefore(const std::vector<ContactRecord>& records, double from, ContactChange found) {
+  const auto isEarlier = [&](double to) {
+    interpolate(island_.step, to, sample_);
+    evaluate(records, to, sample_, ahead_);
+    const std::optional<ContactChange> earlier = firstZero(records, from, to);
+    if (!earlier || !(earlier->fraction < found.fraction - kAtOnce)) return false;
+    found = *earlier;
+    return true;
+  };
+  while (found.fraction - from > kAtOnce)
+    if (!isEarlier(from + (found.fraction - from) / 2) && !isEarlier(found.fraction)) break;
+  return found;
+}
+
 /// The first change between two points of the step, whose event functions are before_ and ahead_.
 std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<ContactRecord>& records, double from,
                                                           double to) {
+  const std::optional<ContactChange> first = firstZero(records, from, to);
+  if (std::none_of(isInDoubt_.begin(), isInDoubt_.end(), [](char isInDoubt) { return isInDoubt != 0; })) return first;
+  const std::optional<double> failure = firstInfeasible(records, from, first ? first->fraction : to);
+  return failure ? ContactChange{Kind::redundant, *failure, 0, *failure} : first;
+}
+
+/// The same, but for contacts whose forces do not prove that they last: these are put into isInDoubt_.
+std::optional<ContactChange> ContactChanges::firstZero(const std::vector<ContactRecord>& records, double from,
+                                                       double to) {
   std::optional<ContactChange> first;
   std::vector<double> fractions;
   isInDoubt_.assign(records.size(), 0);
@@ -308,11 +334,6 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
   if (first) first->latest = to;
   for (const double fraction : fractions)
     if (fraction > first->fraction + kAtOnce) first->latest = std::min(first->latest, fraction);
-  if (std::any_of(isInDoubt_.begin(), isInDoubt_.end(), [](char isInDoubt) { return isInDoubt != 0; })) {
-    const double end = first ? first->fraction : to;
-    if (const auto failure = firstInfeasible(records, from, end))
-      first = ContactChange{Kind::redundant, *failure, 0, *failure};
-  }
   return first;
 }
 

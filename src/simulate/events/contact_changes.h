@@ -84,7 +84,9 @@ class ContactChanges {
   double stickingLeft(std::size_t contact, const std::vector<ContactRecord>& records) const;
   std::optional<ContactChange> firstInDip(const std::vector<ContactRecord>& records, double earlier, double from,
                                           double to);
+  ContactChange firstBefore(const std::vector<ContactRecord>& records, double from, ContactChange found);
   std::optional<ContactChange> firstBetween(const std::vector<ContactRecord>& records, double from, double to);
+  std::optional<ContactChange> firstZero(const std::vector<ContactRecord>& records, double from, double to);
   struct GroupRows {
     std::vector<const ContactRecord*> records;
     std::vector<ContactRows> rows;
