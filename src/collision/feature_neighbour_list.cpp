@@ -100,8 +100,7 @@ double FeatureNeighbourList::moveTo(const MeshPair& pair, double reach) {
 }
 
 void FeatureNeighbourList::renew(const MeshPair& pair, double reach) {
-  const double size = std::min(pair.a.size, pair.b.size);
-  cover_ = std::max(kCover * reach + kCoverRatio * size, kCoverDecay * cover_);
+  cover_ = std::max(kCover * reach + kCoverRatio * lengthOf(pair), kCoverDecay * cover_);
   aFromB_ = pair.aFromB;
   near_.clear();
   for (std::vector<Near>& crossings : crossings_) crossings.clear();

@@ -36,8 +36,11 @@ class FeatureNeighbourList {
   template <class Visit>
   struct OfTriangles;
 
-  // Of the size: searches with a longer reach descend the trees, as most of their pairs are visited once.
-  static constexpr double kMaxReachRatio = 0.02;
+  /// m: the mean length of the edges of the finer surface. With the reach over it, the features near each other grow.
+  static double lengthOf(const MeshPair& pair) { return std::min(pair.a.edgeLength, pair.b.edgeLength); }
+
+  // Of that length: searches with a longer reach descend the trees, as most of their features are visited once.
+  static constexpr double kMaxReachRatio = 0.5;
 
   double movedSince(const MeshPair& pair) const;
   double moveTo(const MeshPair& pair, double reach);
@@ -90,7 +93,7 @@ struct FeatureNeighbourList::OfTriangles {
 template <class Visit>
 void FeatureNeighbourList::visitNear(const MeshPair& pair, Visit& visit) {
   const double reach = std::sqrt(visit.reach());
-  if (reach > kMaxReachRatio * std::min(pair.a.size, pair.b.size)) {
+  if (reach > kMaxReachRatio * lengthOf(pair)) {
     OfTriangles<Visit> ofTriangles{pair, visit};
     return BvhPair(pair.a.tree, pair.b.tree, pair.aFromB).visitNear(ofTriangles);
   }

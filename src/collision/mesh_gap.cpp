@@ -18,6 +18,9 @@ constexpr double kSearchReachGrowth = 16;
 constexpr double kBarelyPassedRatio = 0.01;
 // Of the size: reach of a search at least, so that a gap of rounding is found where none at all is asked for.
 constexpr double kMinReachRatio = 1e-10;
+// Of a side: triangles reach beyond their sides by 90 unit roundoffs where edges go through them, so that none slips
+// through between two of them, whose sides are rounded each for itself.
+constexpr double kSideOverlap = 1e-14;
 
 using Feature = MeshPoint::Feature;
 
@@ -36,10 +39,6 @@ const Vec3& normalAt(const MeshSurface& surface, const Witness& witness) {
   if (witness.feature == Feature::edge) return surface.edges[witness.index].normal;
   return surface.vertexNormals[witness.index];
 }
-
-// Of a side: triangles reach beyond their sides by 90 unit roundoffs where edges go through them, so that none slips
-// through between two of them, whose sides are rounded each for itself.
-constexpr double kSideOverlap = 1e-14;
 
 /// Where an edge goes through a face.
 struct Crossing {

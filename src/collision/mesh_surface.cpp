@@ -212,6 +212,10 @@ void complete(const TriangleMesh& mesh, const std::vector<Seam>& seams, MeshSurf
   addParts(surface);
   surface.tree = buildBvh(mesh);
   surface.size = 2 * surface.tree.nodes[0].halfSize.norm();
+  for (const MeshSurface::Edge& edge : surface.edges) {
+    const auto& [from, to] = edge.vertices;
+    surface.edgeLength += (surface.vertices[to] - surface.vertices[from]).norm() / static_cast<double>(surface.edges.size());
+  }
   addInnerPoint(surface);
 }
 

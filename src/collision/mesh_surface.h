@@ -45,6 +45,7 @@ struct MeshSurface {
   std::optional<Vec3> inner = {};  // m: a point inside, of a convex solid
   bool isSheet = false;            // nothing is inside
   double size = 0;                 // m: diagonal of the box around all
+  double edgeLength = 0;           // m: mean of all edges
   Bvh tree;
 };
 
