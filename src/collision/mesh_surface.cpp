@@ -214,7 +214,8 @@ void complete(const TriangleMesh& mesh, const std::vector<Seam>& seams, MeshSurf
   surface.size = 2 * surface.tree.nodes[0].halfSize.norm();
   for (const MeshSurface::Edge& edge : surface.edges) {
     const auto& [from, to] = edge.vertices;
-    surface.edgeLength += (surface.vertices[to] - surface.vertices[from]).norm() / static_cast<double>(surface.edges.size());
+    surface.edgeLength +=
+        (surface.vertices[to] - surface.vertices[from]).norm() / static_cast<double>(surface.edges.size());
   }
   addInnerPoint(surface);
 }
