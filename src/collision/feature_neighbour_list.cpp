@@ -5,8 +5,8 @@
 namespace cradle {
 namespace {
 
-// The reach of a list, in times that of the search that it is made for, and beyond it, of the size: they decide the
-// cost alone.
+// The reach of a list, in times that of the search that it is made for, and beyond it, of the length of edges: they
+// decide the cost alone.
 constexpr double kCover = 2;
 constexpr double kCoverRatio = 1e-3;
 // A new list reaches at least so many times as far as the one before: searches of short and long reach take turns.

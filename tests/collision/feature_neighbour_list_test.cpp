@@ -54,16 +54,24 @@ void expectSame(const std::vector<ContactPoint>& ones, const std::vector<Contact
   }
 }
 
-struct Solids {
+/// Half of a wheel's triangles, an open sheet.
+MeshSurface torn() {
+  TriangleMesh mesh = wheelMesh(5);
+  mesh.triangles.resize(mesh.triangles.size() / 2);
+  return sheetOf(mesh);
+}
+
+struct Surfaces {
   MeshSurface wheel = surfaceOf(wheelMesh(8)), other = surfaceOf(wheelMesh(5)), prism = surfaceOf(lPrismMesh());
+  MeshSurface sheet = torn();
 };
 
 // Walks of steps from 1e-8 to 1e-2 m, along and about axes at random, around places where the solids touch.
 TEST(FeatureNeighbourList, KeptGivesTheBitsOfANewOne) {
-  const Solids solids;
+  const Surfaces surfaces;
   RandomPoses random(3);
   int touching = 0, overlapping = 0;
-  for (const auto& [a, b] : {std::pair(&solids.wheel, &solids.other), std::pair(&solids.wheel, &solids.prism)})
+  for (const MeshSurface* b : {&surfaces.other, &surfaces.prism, &surfaces.sheet})
     for (int walk = 0; walk < 40; ++walk) {
       FeatureNeighbourList kept;
       // Every other wheel lies flat.
@@ -74,7 +82,7 @@ TEST(FeatureNeighbourList, KeptGivesTheBitsOfANewOne) {
         SCOPED_TRACE(testing::Message() << walk << " " << step);
         pose = {(rotationAbout(random.direction(), length) * pose.rotation).normalized(),
                 pose.translation + length * random.direction()};
-        const MeshPair pair(*a, *b, pose);
+        const MeshPair pair(surfaces.wheel, *b, pose);
         FeatureNeighbourList forGap, forContacts;
         const MeshGap gap = gapBetween(pair, kept, margin);
         expectSame(gap, gapBetween(pair, forGap, margin));
