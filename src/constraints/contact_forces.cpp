@@ -214,9 +214,12 @@ void ContactSolver::findDiagonal(Group& group) {
 /// Whether a group's contacts are of faces that share their loads.
 bool ContactSolver::sharesLoads(const Group& group) const {
   const std::vector<int>& contacts = group.members.contacts;
-  return group.hasNoLoop && std::all_of(contacts.begin(), contacts.end(), [&](int contact) {
-           return areParallel(kinematics_[index(contact)].normal, kinematics_[index(contacts[0])].normal);
-         });
+  const auto pairOf = [&](std::size_t i) {
+    const Joint& joint = contactJoints_[index(contacts[i])];
+    return std::minmax(joint.bodyA, joint.bodyB);
+  };
+  const auto normalOf = [&](std::size_t i) -> const Vec3& { return kinematics_[index(contacts[i])].normal; };
+  return group.hasNoLoop && areOfFaces(contacts.size(), pairOf, normalOf);
 }
 
 /// The matrix of a group in which contacts slide: columns differ with friction alone.

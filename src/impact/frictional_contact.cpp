@@ -293,6 +293,41 @@ bool isRegular(const MatrixX& matrix) {
   return (left.array() > kNormalShiftRatio * matrix.diagonal().array()).all();
 }
 
+/// 1/kg, of each component: by which redundant contacts give way.
+VectorX complianceOf(const MatrixX& G) {
+  const VectorX scales = scalesOf(G);
+  const double largest = 1 / (scales.minCoeff() * scales.minCoeff());
+  const double smallest = 1 / (scales.maxCoeff() * scales.maxCoeff());
+  const double normal = kCompliance * std::max(smallest, kCompliance * largest);
+  const Vec3 ofOne(kTangentialRatio * normal, kTangentialRatio * normal, normal);
+  return ofOne.replicate(scales.size(), 1);
+}
+
+MatrixX yieldingBy(const VectorX& compliance, const MatrixX& G) {
+  MatrixX yielding = G;
+  yielding.diagonal() += compliance;
+  return yielding;
+}
+
+/// Forces with which all contacts stay closed, those with a direction slide, and the others stick, whatever their cones
+/// say: as symmetric as the problem, and near its solution where friction is near its limit. `regular` is G with a
+/// compliance.
+VectorX forcesOfKept(const MatrixX& regular, const VectorX& g, const std::vector<double>& frictions,
+                     const std::vector<Eigen::Vector2d>& directions) {
+  MatrixX matrix = regular;
+  VectorX side = -g;
+  for (Index i = 0; i < std::ssize(directions); ++i) {
+    const Eigen::Vector2d& direction = directions[static_cast<std::size_t>(i)];
+    if (direction.isZero(0)) continue;
+    const auto rows = Eigen::seqN(3 * i, 2);
+    matrix(rows, Eigen::all).setZero();  // in their place: friction of the normal force
+    matrix(rows, rows).setIdentity();
+    matrix(rows, 3 * i + 2) = frictions[static_cast<std::size_t>(i)] * direction;
+    side(rows).setZero();
+  }
+  return matrix.partialPivLu().solve(side);
+}
+
 /// The problem of redundant contacts: of its many solutions the one of contacts that give way equally, by a compliance
 /// that vanishes. So loads are shared in the way that rows of active contacts do (MinimumNormSolver), and what sticks
 /// slides only where no forces can hold it. By the proximal point method (R. T. Rockafellar, "Monotone operators and
@@ -300,20 +335,14 @@ bool isRegular(const MatrixX& matrix) {
 /// leaves of a solution is the compliance's part of it, and each further one leaves that part of what is left.
 ContactSolution solveRedundant(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
                                const std::vector<Eigen::Vector2d>& directions, const VectorX& near) {
-  const VectorX scales = scalesOf(G);
-  const double largest = 1 / (scales.minCoeff() * scales.minCoeff());
-  const double smallest = 1 / (scales.maxCoeff() * scales.maxCoeff());
-  const double normal = kCompliance * std::max(smallest, kCompliance * largest);  // 1/kg
-  const Vec3 ofOne(kTangentialRatio * normal, kTangentialRatio * normal, normal);
-  const VectorX compliance = ofOne.replicate(scales.size(), 1);
-  MatrixX yielding = G;
-  yielding.diagonal() += compliance;
+  const VectorX compliance = complianceOf(G);
+  const MatrixX yielding = yieldingBy(compliance, G);
   const DelassusOperator op = operatorOf(yielding);
   const double fastest = g.cwiseAbs().maxCoeff(), rounding = kProductRounding * fastest;
   const auto normals = Eigen::seq(2, Eigen::last, 3);
   ContactSolution solution;
   VectorX unloaded = VectorX::Zero(g.size());  // impulses to which contacts have given way; < 0: they are as far apart
-  WarmStart start{near.size() > 0 ? near : unloaded, unloaded, 0};
+  WarmStart start{near, unloaded, 0};
   double left = INFINITY;  // m/s: by which contacts give way
   bool isEnough = false;
   long iterations = 0;
@@ -418,12 +447,14 @@ ContactSolution solveSlidingContact(const MatrixX& G, const VectorX& g, const st
 ContactSolution solveSharedContact(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
                                    const std::vector<Eigen::Vector2d>& directions, const VectorX& near) {
   const auto isZero = [](double friction) { return friction == 0; };
-  if (!std::all_of(frictions.begin(), frictions.end(), isZero) && !isRegular(G)) {
-    ContactSolution shared = solveRedundant(G, g, frictions, directions, near);
+  if (std::all_of(frictions.begin(), frictions.end(), isZero)) return solveFrictionalContact(G, g, frictions, near);
+  const VectorX start = near.size() > 0 ? near : forcesOfKept(yieldingBy(complianceOf(G), G), g, frictions, directions);
+  if (!isRegular(G)) {
+    ContactSolution shared = solveRedundant(G, g, frictions, directions, start);
     if (shared.converged) return shared;
   }
   return directions.empty() ? solveFrictionalContact(G, g, frictions, near)
-                            : solveSlidingContact(G, g, frictions, directions, near);
+                            : solveSlidingContact(G, g, frictions, directions, start);
 }
 
 }  // namespace cradle

@@ -45,7 +45,8 @@ ContactSolution solveSlidingContact(const MatrixX& G, const VectorX& g, const st
 
 /// One of both, the former without `directions`, for the contacts of one face, which share its load as those do that
 /// give way equally: with forces that follow loads without a jump, and stick as long as any can hold them. Where such a
-/// solution is not found, as above.
+/// solution is not found, as above. Without `near` it is sought from forces that keep all contacts closed, and all that
+/// stick where they are.
 ContactSolution solveSharedContact(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
                                    const std::vector<Eigen::Vector2d>& directions, const VectorX& near);
 

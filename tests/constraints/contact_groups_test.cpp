@@ -199,5 +199,20 @@ TEST(ContactGroups, JoinBodiesWithoutALoop) {
   EXPECT_FALSE(joinWithoutLoop(std::vector<std::pair<int, int>>(13, {0, kFixed}), free, false));
 }
 
+// A leaning box on a lying one: the normals of the two faces differ, those of each do not. In a corner of one body, or
+// turned by more than 1e-9, they do.
+TEST(ContactGroups, AreOfFacesWhereNormalsOfEachPairAreParallel) {
+  const Vec3 up = Vec3::UnitY(), leaning = Vec3(0.6, 0.8, 0);
+  const auto areFaces = [](const std::vector<std::pair<int, int>>& pairs, const std::vector<Vec3>& normals) {
+    return areOfFaces(
+        pairs.size(), [&](std::size_t i) { return pairs[i]; }, [&](std::size_t i) { return normals[i]; });
+  };
+  const std::vector<std::pair<int, int>> stack{{-1, 0}, {0, 1}, {-1, 0}, {0, 1}};
+  EXPECT_TRUE(areFaces(stack, {up, leaning, up, leaning}));
+  EXPECT_TRUE(areFaces(stack, {up, leaning, -up, leaning}));
+  EXPECT_FALSE(areFaces(stack, {up, leaning, leaning, leaning}));
+  EXPECT_FALSE(areFaces(stack, {up, up, up, Vec3(2e-9, 1, 0)}));
+}
+
 }  // namespace
 }  // namespace cradle

@@ -118,6 +118,36 @@ TEST(DraggedBox, EndsWithinItsAccuracy) {
   }
 }
 
+// Three boxes on each other, of which a spring drags the lowest: it slides, and so do the others on it in the end, at
+// instants that follow from their loads alone. Ends as above.
+TEST(DraggedStack, EndsWithinItsAccuracy) {
+  const auto run = [](double accuracy) {
+    const Trajectory moved = simulate(sceneWith(fmt::format(
+        R"("duration": 1.5, "accuracy": {}, "output": {{"framesPerSecond": 20}}, "materials": {{"m": {{"density": 553,
+        "restitution": 0, "staticFriction": 0.656, "dynamicFriction": 0.546}}}},
+        "bodies": [{{"name": "ground", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+          {{"name": "low", "shape": {{"box": {{"size": [0.284, 0.177, 0.348]}}}}, "material": "m",
+            "position": [0.000675, 0.0885, 0.0124]}},
+          {{"name": "middle", "shape": {{"box": {{"size": [0.103, 0.0663, 0.311]}}}}, "material": "m",
+            "position": [0.0182, 0.21015, 0.00344]}},
+          {{"name": "top", "shape": {{"box": {{"size": [0.116, 0.188, 0.174]}}}}, "material": "m",
+            "position": [-0.00956, 0.3373, -0.00634]}}],
+        "springs": [{{"bodyA": "low", "anchorA": [-0.0289, 0.00219, -0.0274], "anchorB": [0.67, 0.491, 0.0309],
+          "stiffness": 207, "restLength": 0.163, "damping": 0.148}}])",
+        accuracy)));
+    EXPECT_TRUE(moved.cost.promise.ends_with("; kept")) << accuracy << moved.cost.promise;
+    return moved.frames.back().states;
+  };
+  const std::vector<BodyState> exact = run(1e-10);
+  for (const double accuracy : {1e-6, 1e-8}) {
+    const std::vector<BodyState> end = run(accuracy);
+    for (std::size_t i = 0; i < end.size(); ++i) {
+      EXPECT_LT((end[i].position - exact[i].position).norm(), 10 * accuracy) << i;
+      EXPECT_LT(orientationError(end[i].orientation, exact[i].orientation), 10 * accuracy) << i;
+    }
+  }
+}
+
 // A block that slides askew over the edge of a table: it tips when its centre is beyond the edge, or before, as its
 // friction bends it forwards. Loads of its corners fall below zero then and come back in a step as long as the rest of
 // the motion, as they have poles where a corner comes to the edge.

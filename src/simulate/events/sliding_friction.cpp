@@ -44,10 +44,10 @@ bool shareLoads(const std::vector<const ContactRecord*>& records, const IslandSt
   for (const DrivenBody& driven : island.assembly.mechanism.driven)
     joinsNothing[static_cast<std::size_t>(driven.body)] = 1;
   std::vector<std::pair<int, int>> joined;
-  for (const ContactRecord* record : records) {
-    if (!areParallel(record->contact.normal, records[0]->contact.normal)) return false;
-    joined.emplace_back(record->contact.bodyA, record->contact.bodyB);
-  }
+  for (const ContactRecord* record : records) joined.emplace_back(record->contact.bodyA, record->contact.bodyB);
+  const auto pairOf = [&](std::size_t i) { return std::minmax(joined[i].first, joined[i].second); };
+  const auto normalOf = [&](std::size_t i) -> const Vec3& { return records[i]->contact.normal; };
+  if (!areOfFaces(records.size(), pairOf, normalOf)) return false;
   const Constraints& constraints = island.assembly.mechanism.constraints;
   const auto isJoined = [&](int body) {
     return body != kFixed && !joinsNothing[static_cast<std::size_t>(body)] &&
@@ -79,6 +79,9 @@ SlidingSolution solveContactForces(const std::vector<const ContactRecord*>& reco
   };
   if (!slides) return {solve(free, {})};
   const std::vector<Eigen::Vector2d> directions = slidingDirections(records, rows);
+  if (sharesLoads)
+    if (const ContactSolution kept = solveSharedContact(matrix, free, frictions, directions, {}); kept.converged)
+      return {kept};
   VectorX friction = VectorX::Zero(free.size()), used;
   SlidingSolution solution;
   for (int round = 0; round < kMaxFrictionRounds; ++round) {
