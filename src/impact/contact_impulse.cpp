@@ -55,18 +55,13 @@ bool hasShortMomentArm(const Contact& contact, const ImpulseResponse& response, 
                                           arm * arm * unconstrainedDelassusAlongNormal(contact, response, state);
 }
 
-std::vector<Contact> eraseImmobile(const ImpulseResponse& response, const VectorX& state,
-                                   std::vector<Contact>& contacts) {
-  std::vector<Contact> erased;
-  if (!response.areConstrained()) return erased;
-  std::erase_if(contacts, [&](const Contact& contact) {
-    if (!isImmobile(inverseMassAlongNormal(contact, response, state),
-                    unconstrainedDelassusAlongNormal(contact, response, state)))
-      return false;
-    erased.push_back(contact);
-    return true;
-  });
-  return erased;
+bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state) {
+  return response.areConstrained() && isImmobile(inverseMassAlongNormal(contact, response, state),
+                                                 unconstrainedDelassusAlongNormal(contact, response, state));
+}
+
+void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts) {
+  std::erase_if(contacts, [&](const Contact& contact) { return isImmobile(contact, response, state); });
 }
 
 Mat3 ImpulseResponse::delassusAt(const Contact& contact, const VectorX& state) const {

@@ -22,9 +22,11 @@ class ImpulseResponse;
 /// anchor so closely that impulses at the contact are 1 / arm times as large as those that the motion asks for.
 bool hasShortMomentArm(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double arm);
 
-/// Erases the contacts that the bodies' constraints let neither open nor close.
-std::vector<Contact> eraseImmobile(const ImpulseResponse& response, const VectorX& state,
-                                   std::vector<Contact>& contacts);
+/// Whether the bodies' constraints let a contact neither open nor close.
+bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state);
+
+/// Erases the contacts that are immobile.
+void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts);
 
 /// The response of bodies to impulses at contacts. Constraints, with the Jacobian B, respond within the same impulse:
 /// in place of the inverse mass matrix M^-1 stands W = M^-1 - M^-1 B^T (B M^-1 B^T)^-1 B M^-1.

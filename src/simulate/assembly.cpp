@@ -406,6 +406,11 @@ void beginAt(double time, const VectorX& state, const std::vector<JointState>& j
   }
 }
 
+Constraints tiesOf(const Assembly& assembly) {
+  const Constraints& all = assembly.mechanism.constraints;
+  return {all.begin(), all.begin() + std::ssize(assembly.names.constraints)};
+}
+
 int indexAmong(const std::vector<int>& bodies, int body) {
   const auto found = std::lower_bound(bodies.begin(), bodies.end(), body);
   return found != bodies.end() && *found == body ? static_cast<int>(found - bodies.begin()) : kFixed;

@@ -55,6 +55,10 @@ struct Assembly {
   bool hasLongSteps = false;  // a warning tells that the method's steps are too long for a spring
 };
 
+/// The constraints that hold both ways: those of the scene's links, and of pinned places. Taut limits stand behind
+/// them.
+Constraints tiesOf(const Assembly& assembly);
+
 /// Index of a scene body among ascending ones, or -1 (kFixed) if it is not there. O(log n).
 int indexAmong(const std::vector<int>& bodies, int body);
 

@@ -73,12 +73,6 @@ void IslandState::failAtNoRoom(const Contact& contact) const {
                           time, nameOf(a), nameOf(b)));
 }
 
-void IslandState::requireRoom(const std::vector<Contact>& immobile, double still) const {
-  if (assembly.mechanism.driven.empty()) return;
-  for (const Contact& contact : immobile)
-    if (openingSpeed(contact, state) < -still) failAtNoRoom(contact);
-}
-
 void IslandState::requireUnsolvedPairsApart() const {
   for (const ColliderPair& pair : assembly.geometry.unsolvedPairs) {
     const int a = assembly.geometry.colliders[pair.a].body, b = bodyBOf(assembly.geometry, pair);

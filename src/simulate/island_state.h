@@ -51,10 +51,6 @@ struct IslandState {
   /// Throws Error(unstable) that names the bodies of a contact that driven bodies press together.
   [[noreturn]] void failAtNoRoom(const Contact& contact) const;
 
-  /// The same for the first of some contacts to which ties leave no motion that closes by more than `still` (m/s): what
-  /// is driven presses them by those ties.
-  void requireRoom(const std::vector<Contact>& immobile, double still) const;
-
   /// Contact that cannot be computed must not come about: passing through each other silently would be a lie. Throws
   /// Error(scene).
   void requireUnsolvedPairsApart() const;

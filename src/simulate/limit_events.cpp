@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "collision/root_bracketing.h"
+#include "constraints/disjoint_sets.h"
 #include "constraints/invariants.h"
 #include "dynamics/integrators/pose_interpolant.h"
 #include "impact/impact_energy.h"
@@ -412,19 +413,34 @@ void LimitEvents::endImpact(double time, const std::vector<ImpactContact>& impac
 }
 
 void LimitEvents::giveWay(const std::vector<Contact>& touching) {
-  if (touching.empty()) return;
-  const auto isDriven = [this](int body) {
-    return body != kFixed && assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven();
+  if (touching.empty() || !hasLimits()) return;
+  const std::vector<RigidBody>& bodies = assembly_.mechanism.bodies;
+  const auto isDriven = [&](int body) { return body != kFixed && bodies[static_cast<std::size_t>(body)].isDriven(); };
+  const auto moves = [&](int body) { return body != kFixed && !isDriven(body); };
+  DisjointSets clusters(bodies);
+  for (const Constraint& tie : assembly_.mechanism.constraints) clusters.join(tie.anchorA.body, tie.anchorB.body);
+  // By the first body of a cluster: whether one of it touches anything, and whether one touches, or is tied to, what is
+  // driven.
+  std::vector<char> touches(bodies.size(), 0), isLed(bodies.size(), 0);
+  const auto note = [&](int body, int other, bool areTouching) {
+    if (!moves(body)) return;
+    const std::size_t cluster = static_cast<std::size_t>(clusters.islandOf(body));
+    if (areTouching) touches[cluster] = 1;
+    if (isDriven(other)) isLed[cluster] = 1;
   };
-  const auto touches = [&](int body) {
-    return std::any_of(touching.begin(), touching.end(),
-                       [body](const Contact& contact) { return contact.bodyA == body || contact.bodyB == body; });
-  };
+  for (const Constraint& tie : assembly_.mechanism.constraints)
+    note(tie.anchorA.body, tie.anchorB.body, false), note(tie.anchorB.body, tie.anchorA.body, false);
+  for (const Contact& contact : touching)
+    note(contact.bodyA, contact.bodyB, true), note(contact.bodyB, contact.bodyA, true);
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
     if (!isTaut(i)) continue;
-    const auto [a, b] = bodiesOf(assembly_.limits[i]);
     const bool isStop = std::holds_alternative<JointLimit>(assembly_.limits[i]);
-    if (((isStop || isDriven(a)) && touches(b)) || ((isStop || isDriven(b)) && touches(a))) tautRow_[i] = -1;
+    const auto [a, b] = bodiesOf(assembly_.limits[i]);
+    for (const int body : {a, b}) {
+      if (!moves(body)) continue;
+      const std::size_t cluster = static_cast<std::size_t>(clusters.islandOf(body));
+      if (touches[cluster] && (isStop || isLed[cluster])) tautRow_[i] = -1;
+    }
   }
   rebuildConstraints();
 }

@@ -45,9 +45,9 @@ class LimitEvents {
   /// Impulses and new constraints alone, of limits that are reached and go on. True if there are any.
   bool pullStretched(double time, VectorX& state);
 
-  /// Taut ropes from a driven body to one of those that touch are no rods any more, until they lengthen: what drives
-  /// their ends would press bodies by them onto what they touch. Nor are stops of bodies that touch any joints, as what
-  /// strikes these may open them.
+  /// Taut stops of bodies that touch, or are tied to some that do, are no joints any more until they are reached again,
+  /// as what strikes these may open them. Nor are taut ropes rods, where what is driven holds or touches those bodies:
+  /// it would press them by the ropes onto what they touch.
   void giveWay(const std::vector<Contact>& touching);
 
   /// Limits that are reached as members of an impact: they lengthen as contacts close, along the line of their ends.

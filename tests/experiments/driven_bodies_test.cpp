@@ -697,6 +697,100 @@ TEST(DrivenBodies, BarSweepsABoxAlikeInAllDirections) {
   }
 }
 
+// A hand sets something down, or pushes it off, whose taut rope or stop holds it along the normal of the contact. Such
+// a tie holds one way only: it goes slack, or opens, and what is met carries, by events and by time stepping alike.
+const char* const kByEvents = "";
+const char* const kBySteps = R"("method": {"name": "rk4", "timeStep": 0.001},)";
+
+TEST(DrivenBodies, RopesGoSlackWhereTheirBallIsSetDown) {
+  for (const double aside : {0.0, 1e-8, 0.2})  // m, of the hand: two ropes there, as a V
+    for (const char* const method : {kByEvents, kBySteps}) {
+      const std::string ropes =
+          aside < 0.1 ? fmt::format(R"({{"bodyA": "ball", "bodyB": "hand", "anchorB": [{}, 0, 0]}})", aside)
+                      : R"({"bodyA": "ball", "bodyB": "hand", "anchorB": [0.2, 0, 0]},
+                                               {"bodyA": "ball", "bodyB": "hand", "anchorB": [-0.2, 0, 0]})";
+      const Trajectory moved =
+          runDriven(1.5, 1e-6,
+                    R"({"name": "ground", "shape": {"plane": {}}, "motion": "static", "material": "half"},
+        {"name": "hand", "shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "motion": "driven", "collision": "none",
+        "position": [0, 1.5, 0], "linearVelocity": [0, -0.5, 0]},
+        {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "material": "half", "position": [0, 0.5, 0],
+        "linearVelocity": [0, -0.5, 0]})",
+                    fmt::format(R"("ropes": [{}], {})", ropes, method));
+      EXPECT_LT((moved.frames.back().states[1].position - Vec3(0, 0.1, 0)).norm(), 1e-7) << aside << method;
+      EXPECT_FALSE(eventsOf(moved, EventKind::slack).empty()) << aside << method;
+      if (method != kByEvents) continue;
+      double impulse = 0;  // N s: all of the ball's momentum, at 0.8 s
+      for (const Event& event : eventsOf(moved, EventKind::impact)) impulse += event.impulse;
+      EXPECT_NEAR(impulse, 0.5, 1e-7) << aside;
+      EXPECT_NEAR(eventsOf(moved, EventKind::slack)[0].time, 0.8, 1e-7) << aside;
+    }
+}
+
+// The stop is not the wheel's, but that of the carriage with its axle.
+TEST(DrivenBodies, StopOpensWhereAWheelOnItsCarriageIsSetDown) {
+  for (const char* const method : {kByEvents, kBySteps}) {
+    const Trajectory moved =
+        runDriven(1.5, 1e-6,
+                  R"({"name": "ground", "shape": {"plane": {}}, "motion": "static", "material": "half"},
+        {"name": "lift", "shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "motion": "driven", "collision": "none",
+        "position": [0, 0.7, 0], "linearVelocity": [0, -0.2, 0]},
+        {"name": "carriage", "shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "collision": "none", "mass": 1.5,
+        "position": [0, 0.5, 0], "linearVelocity": [0, -0.2, 0]},
+        {"name": "wheel", "shape": {"sphere": {"radius": 0.15}}, "mass": 1, "material": "half", "position": [0, 0.35, 0],
+        "linearVelocity": [0, -0.2, 0]})",
+                  fmt::format(R"("sliders": [{{"bodyA": "carriage", "bodyB": "lift", "anchorB": [0, -0.2, 0],
+        "axis": [0, 1, 0], "limits": {{"lower": 0}}}}],
+        "hinges": [{{"bodyA": "wheel", "bodyB": "carriage", "anchorB": [0, -0.15, 0]}}], {})",
+                              method));
+    const std::vector<BodyState>& end = moved.frames.back().states;
+    EXPECT_LT((end[2].position - Vec3(0, 0.15, 0)).norm(), 1e-6) << method;
+    EXPECT_LT((end[1].position - Vec3(0, 0.3, 0)).norm(), 1e-6) << method;
+  }
+}
+
+// A ball on the upper stop of its slider is lifted off it as long as the lower one leaves room, and no longer.
+TEST(DrivenBodies, LiftTakesABallOffItsStopUpToTheNextOne) {
+  for (const char* const method : {kByEvents, kBySteps}) {
+    const auto lift = [&](double upper) {
+      return runDriven(1.4, 1e-6,
+                       R"({"name": "lift", "shape": {"box": {"size": [1, 0.1, 1]}}, "motion": "driven", "material": "m",
+          "position": [0, -0.55, 0], "linearVelocity": [0, 0.5, 0]},
+          {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "material": "half"})",
+                       fmt::format(R"("sliders": [{{"bodyA": "ball", "anchorB": [0, 0, 0], "axis": [0, 1, 0],
+          "limits": {{"lower": 0, "upper": {}}}}}], {})",
+                                   upper, method));
+    };
+    EXPECT_NEAR(lift(3).frames.back().states[1].position.y(), 0.3, 1e-6) << method;  // 0.05 + 0.1 above the lift
+    try {
+      lift(0.2);
+      FAIL() << method;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("\"lift\" is pressed into \"ball\": what is driven leaves no room"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("unstable at 1.2")) << error.what();
+    }
+  }
+}
+
+// The line from the hinge to the middle of the door stands off the hand by the radius and half of the thickness:
+// 0.8 sin a - z cos a = 0.125, z the way of the hand beyond the shut door.
+TEST(DrivenBodies, HandPushesADoorOffItsStop) {
+  for (const char* const method : {kByEvents, kBySteps}) {
+    const Trajectory moved =
+        runDriven(1.2, 1e-6,
+                  R"({"name": "door", "shape": {"box": {"size": [1, 0.5, 0.05]}}, "mass": 1, "material": "half",
+        "position": [0.5, 0, 0]},
+        {"name": "hand", "shape": {"sphere": {"radius": 0.1}}, "motion": "driven", "material": "half",
+        "position": [0.8, 0, 0.5], "linearVelocity": [0, 0, -0.6]})",
+                  fmt::format(R"("hinges": [{{"bodyA": "door", "anchorA": [-0.5, 0, 0], "anchorB": [0, 0, 0],
+        "axis": [0, 1, 0], "limits": {{"lower": 0, "upper": 2}}, "motor": {{"torque": -1}}}}], {})",
+                              method));
+    const double far = std::hypot(0.8, 0.22), angle = std::asin(0.125 / far) + std::atan2(0.22, 0.8);
+    const Vec3 middle = 0.5 * Vec3(std::cos(angle), 0, -std::sin(angle));
+    EXPECT_LT((moved.frames.back().states[0].position - middle).norm(), method == kByEvents ? 1e-6 : 1e-4) << method;
+  }
+}
+
 /// One ball goes with a belt, another one falls on it far away: that impact is none of the first.
 TEST(DrivenBodies, BeltCarriesNoImpactFromOneBodyToAnother) {
   const Trajectory moved =

@@ -40,6 +40,8 @@ StepContacts::StepContacts(IslandState& island, const ChosenMethod& method)
       log_(island.log),
       resting_(island.resting),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
+      ties_(tiesOf(assembly_)),
+      tieSolver_(ties_, assembly_.mechanism.bodies),
       timeStep_(method.timeStep),
       stepping_(assembly_) {
   resting_.setStillTime(tolerances().minAwakeTime(timeStep_));
@@ -52,7 +54,7 @@ void StepContacts::resolveImpacts(double time, const VectorX& before, LimitEvent
   if (touching_.empty()) return;
   wakeTouched(time, state);
   ropes.giveWay(touching_);
-  if (solver_.hasConstraints()) solver_.factorize(state);
+  eraseHeld(state, touching_);
   if (!stepsOnly_) {
     resolveImpactIslands(time, before, state);
     return letSleep(time, touching_, state);
@@ -108,8 +110,8 @@ void StepContacts::findStepContacts(const VectorX& before, const VectorX& state,
 /// Widens the gaps of contacts with a short moment arm about a joint, so that they may overlap a little: their impulses
 /// rotate bodies farther than steps can follow, and bodies that do rotate give them a longer moment arm.
 void StepContacts::loosenShortMomentArms(const VectorX& state, std::vector<Contact>& contacts) {
-  if (contacts.empty() || !solver_.hasConstraints()) return;
-  const ImpulseResponse response(assembly_.mechanism.bodies, solver_);
+  if (contacts.empty() || !tieSolver_.hasConstraints()) return;
+  const ImpulseResponse response(assembly_.mechanism.bodies, tieSolver_);
   for (Contact& contact : contacts)
     if (hasShortMomentArm(contact, response, state, StepTolerances::kLooseMomentArm))
       contact.separation += StepTolerances::kLoosened * smallestSize(contact, assembly_.radii);
@@ -153,6 +155,7 @@ double StepContacts::nextImpact(const VectorX& before, const VectorX& state, dou
 
 void StepContacts::solveContacts(const VectorX& before, double length, const LimitEvents& ropes, VectorX& state) {
   stepPart_ = length / timeStep_;
+  eraseHeld(before, touching_);
   // Of a step that is shortened after this, no impact inside is known.
   stepping_.resolve(touching_, ropes.withinReach(before, state, length), before, length, state,
                     std::exchange(strikesInside_, {}));
@@ -182,6 +185,7 @@ void StepContacts::correctPenetrations(const LimitEvents& ropes, VectorX& state)
     for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
     if (deepest <= tolerances().letBe()) return;
     findTouching(state, kNearOverlap * deepest, overlapping_);
+    eraseHeld(state, overlapping_);
     loosenShortMomentArms(state, overlapping_);
     stepping_.correctPenetration(overlapping_, ropes.withinReach(state, state, 0), state);
   }
@@ -211,7 +215,7 @@ void StepContacts::letSleep(double time, const std::vector<Contact>& contacts, V
     log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
 }
 
-/// Contacts of this instant between bodies of which one moves, which can open or close as far as constraints let them,
+/// Contacts of this instant between bodies of which one moves, which can open or close as far as ties let them,
 /// with separations of at most marginOf(bodyA, bodyB) (m).
 void StepContacts::findTouching(const VectorX& state, const std::function<double(int, int)>& marginOf,
                                 std::vector<Contact>& touching) {
@@ -222,9 +226,16 @@ void StepContacts::findTouching(const VectorX& state, const std::function<double
     const int bodyA = geometry.colliders[geometry.pairs[pair].a].body, bodyB = bodyBOf(geometry, geometry.pairs[pair]);
     if (!lies(bodyA) || !lies(bodyB)) appendContacts(geometry, pair, state, marginOf(bodyA, bodyB), touching);
   }
-  if (touching.empty() || !solver_.hasConstraints()) return;
+  if (touching.empty() || !tieSolver_.hasConstraints()) return;
+  tieSolver_.factorize(state);
+  eraseImmobile(ImpulseResponse(assembly_.mechanism.bodies, tieSolver_), state, touching);
+}
+
+/// Erases the contacts that limits hold which have not given way to them, and factorises the constraints for the state.
+void StepContacts::eraseHeld(const VectorX& state, std::vector<Contact>& contacts) {
+  if (!solver_.hasConstraints()) return;
   solver_.factorize(state);
-  eraseImmobile(ImpulseResponse(assembly_.mechanism.bodies, solver_), state, touching);
+  eraseImmobile(ImpulseResponse(assembly_.mechanism.bodies, solver_), state, contacts);
 }
 
 void StepContacts::findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) {

@@ -65,6 +65,7 @@ class StepContacts {
   void findTouching(const VectorX& state, const std::function<double(int, int)>& marginOf,
                     std::vector<Contact>& touching);
   void findTouching(const VectorX& state, double margin, std::vector<Contact>& touching);
+  void eraseHeld(const VectorX& state, std::vector<Contact>& contacts);
   void loosenShortMomentArms(const VectorX& state, std::vector<Contact>& contacts);
   void correctPenetrations(const LimitEvents& ropes, VectorX& state);
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
@@ -82,6 +83,8 @@ class StepContacts {
   EventLog& log_;
   RestingBodies& resting_;
   ConstraintSolver solver_;
+  Constraints ties_;  // without taut limits, which contacts may let go
+  ConstraintSolver tieSolver_;
   double timeStep_;             // s
   double stepPart_ = INFINITY;  // length of the last step over the method's
   std::vector<Contact> touching_, overlapping_;
