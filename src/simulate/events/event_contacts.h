@@ -38,6 +38,9 @@ class EventContacts {
   void resolve(const std::optional<ContactChange>& change = std::nullopt,
                const std::optional<std::size_t>& closingPair = std::nullopt);
 
+  /// The next gap to close that is too small to be seen, if impacts have left any.
+  std::optional<KnownGaps::Closing> nextHidden() const { return impacts_.nextHidden(); }
+
   /// Notes as a reason to fall back to time stepping that a joint leaves a touching contact hardly any moment arm, or
   /// less than `momentArm` (sizes of a body), if one does.
   void noteShortMomentArms();

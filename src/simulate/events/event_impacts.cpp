@@ -103,6 +103,7 @@ SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double s
   limits.gapRounding = tolerances_.gapRounding(farthest), limits.stillSpeed = stillSpeed;
   limits.openingSpeed = tolerances_.minOpeningSpeed(tolerances_.scales.size);
   limits.touchTolerance = tolerances_.touch, limits.reach = tolerances_.reach, limits.duration = INFINITY;
+  limits.shortestTime = EventTolerances::kInstantRatio * island_.time;
   limits.leastRounding = tolerances_.sphereGapRounding(farthest);
   for (const Contact& contact : near)
     limits.gapErrors.push_back(isOfSphere(contact) ? limits.leastRounding : limits.gapRounding);
@@ -121,6 +122,7 @@ SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double s
 /// Whether a contact has a gap that its separation shows.
 bool EventImpacts::isApart(const Contact& contact, const SequenceLimits& limits) const {
   const auto known = knownGaps_.find(contact, limits.leastRounding);
+  if (known && known->gap > EventTolerances::kKnownGapRatio * known->error) return true;
   const bool isShown = known && std::abs(contact.separation - known->gap) <= limits.leastRounding;
   return contact.separation > (isShown ? limits.leastRounding : limits.gapRounding);
 }

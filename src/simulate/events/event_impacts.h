@@ -37,6 +37,9 @@ class EventImpacts {
   /// time (s): how long the rebounds that were left out would take.
   double resolve(const std::optional<std::size_t>& closingPair, std::vector<Contact>& touching);
 
+  /// The next gap to close that is too small to be seen, if impacts have left any.
+  std::optional<KnownGaps::Closing> nextHidden() const { return knownGaps_.nextHidden(); }
+
  private:
   /// The impulse of a contact in all impacts of a sequence.
   struct ContactImpulse {

@@ -113,14 +113,20 @@ EventMotion::EventMotion(IslandState& island, LimitEvents& ropes, const ChosenMe
 void EventMotion::advance(double frame) {
   double& time = island_.time;
   Step& step = island_.step;
-  const double stepEnd = std::min({island_.lastStepEnd, island_.nextChange(), contacts_.active().nextFreeDirection()});
+  const std::optional<KnownGaps::Closing> hidden = contacts_.nextHidden();
+  const double stepEnd = std::min({island_.lastStepEnd, island_.nextChange(), contacts_.active().nextFreeDirection(),
+                                   hidden ? hidden->time : INFINITY});
 
   // How far do bodies move until the first event?
-  const std::optional<Event> found = stepToFirstEvent(stepEnd);
+  std::optional<Event> found = stepToFirstEvent(stepEnd);
   if (!found) return;
-  const Event& event = *found;
+  Event& event = *found;
   time = step.time + step.timeStep;
   if (!event.any() && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
+  if (!event.any() && hidden && time == hidden->time) {
+    event.impact.emplace();
+    event.impact->fraction = 1, event.impact->pair = hidden->pair;
+  }
 
   // The interpolant is that of the forces that act until the event.
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);

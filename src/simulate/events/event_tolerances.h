@@ -69,6 +69,9 @@ struct EventTolerances {
     return std::max(kSphereGapRoundingRatio * scales.size, kCoordinateRounding * x);
   }
 
+  // Times its rounding: a smaller gap may be none, where it is measured.
+  static constexpr double kHiddenGapRatio = 2;
+
   // So well gaps are known that grow in a sequence of impacts. [1e-12, 1e-3]; with 0, a sphere between a wall and a
   // heavy one does not have the number of impacts that it should.
   static constexpr double kGapGrowthError = 1e-9;  // of the distance by which the fastest contact closes meanwhile
@@ -107,6 +110,12 @@ struct EventTolerances {
   double maxSequenceTime(double acceleration) const {  // s
     return std::max(kMinSequenceRatio, reach / scales.size) * std::sqrt(scales.size / acceleration);
   }
+
+  // Of the time: two instants so near are one.
+  static constexpr double kInstantRatio = 1e-15;
+
+  // A gap that is this many times its error is known well enough for the instant at which it closes.
+  static constexpr double kKnownGapRatio = 100;
 
   // So little time the last impacts of a collapse take. [1e-16, 1e-8]
   static constexpr double kCollapseRatio = 1e-12;  // of the time elapsed

@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::size_t kCollapseImpacts = 200;   // enough to tell intervals that shrink for ever from a few short ones
 constexpr std::size_t kImpactsOfAContact = 20;  // the same, for each contact
-constexpr double kHiddenGap = 2;                // times a gap's rounding: measured, it may be none
 constexpr std::size_t kMaxSequenceImpacts = 100000;  // a row of 40 spheres takes a thousand
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -78,7 +77,7 @@ void ImpactSequence::closeGap(std::size_t contact) {
 bool ImpactSequence::isWithinRounding(std::size_t contact) const {
   const double least = limits_.leastRounding;
   const bool isKnown = gapErrors_[contact] < least && std::abs(offsets_[contact]) <= least;
-  return gaps_[contact] <= kHiddenGap * (isKnown ? least : limits_.gapRounding);
+  return gaps_[contact] <= EventTolerances::kHiddenGapRatio * (isKnown ? least : limits_.gapRounding);
 }
 
 bool ImpactSequence::next(const VectorX& state) {
@@ -104,12 +103,18 @@ bool ImpactSequence::next(const VectorX& state) {
   return true;
 }
 
-/// At the end of a sequence, closes gaps that rounding would hide from the search for the next event. True if there is
-/// one.
+/// Whether a gap is known so well, however small, that the instant is known at which it closes.
+bool ImpactSequence::closesLater(std::size_t contact) const {
+  return gaps_[contact] > EventTolerances::kKnownGapRatio * gapErrors_[contact] &&
+         gapErrors_[contact] < limits_.leastRounding && gaps_[contact] > -speeds_[contact] * limits_.shortestTime;
+}
+
+/// At the end of a sequence, closes gaps that rounding would hide from the search for the next event, and whose instant
+/// is not known. True if there is one.
 bool ImpactSequence::closeWithinRounding() {
   bool isAnyClosed = false;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (!closes(i) || !isWithinRounding(i)) continue;
+    if (!closes(i) || !isWithinRounding(i) || closesLater(i)) continue;
     closeGap(i);
     isAnyClosed = true;
   }

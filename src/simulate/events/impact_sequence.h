@@ -12,6 +12,7 @@ struct SequenceLimits {
   std::vector<double> gapErrors;   // m, of each contact: a gap below it is none
   std::vector<double> gapOffsets;  // m, of each contact: by so much is its separation more than its gap; empty: 0
   double gapRounding = 0;          // m: rounding may hide gaps about as small from the events that follow
+  double shortestTime = 0;         // s: an instant so little later is the same
   double leastRounding = 0;        // m: the same, where a gap is known better than this and its separation tells it
   double touchTolerance = 0;       // m: bound on the gap that the pair of an event seems to have
   double reach = 0;                // m: contacts farther apart are not known, so bodies move by half of it at most
@@ -72,6 +73,7 @@ class ImpactSequence {
   bool hasCollapsed() const;
   bool closeWithinRounding();
   double timeToNextImpact() const;
+  bool closesLater(std::size_t contact) const;
   bool mayAdvance(const VectorX& state, double time) const;
   void advance(const VectorX& state, double time);
   void findMembers();

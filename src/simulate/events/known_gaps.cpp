@@ -5,19 +5,18 @@
 #include <limits>
 
 #include "simulate/events/contact_record.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
-/// m/s: of the fastest point of the two bodies.
-double fastestSpeed(const Contact& contact, const VectorX& state, const std::vector<double>& radii) {
-  double fastest = 0;
-  for (const int body : {contact.bodyA, contact.bodyB}) {
-    if (body == kFixed) continue;
-    const double turning = radii[static_cast<std::size_t>(body)] * angularVelocity(state, body).norm();
-    fastest = std::max(fastest, linearVelocity(state, body).norm() + turning);
-  }
-  return fastest;
+/// m/s: at which the two bodies slide along each other, and turn. What goes along the normal changes no direction.
+double slidingSpeed(const Contact& contact, const VectorX& state, const std::vector<double>& radii) {
+  const Vec3 relative = relativeVelocity(contact, state);
+  double speed = (relative - relative.dot(contact.normal) * contact.normal).norm();
+  for (const int body : {contact.bodyA, contact.bodyB})
+    if (body != kFixed) speed += radii[static_cast<std::size_t>(body)] * angularVelocity(state, body).norm();
+  return speed;
 }
 
 }  // namespace
@@ -33,14 +32,15 @@ void KnownGaps::keep(const ImpactSequence& sequence, double largestError) {
   }
 }
 
-/// The errors of a gap grow by the change of its speed x time, by the rounding of time, and by w^2 / l on a way w, on
-/// which the normal turns by w / l. As in a sequence, a contact without a gap that hardly opens stays without.
+/// The errors of a gap grow by the change of its speed x time, by the rounding of time, and by w^2 / l on a way w along
+/// the surfaces, on which the normal turns by w / l. As in a sequence, a contact without a gap that hardly opens stays
+/// without.
 std::optional<KnownGaps::Gap> KnownGaps::find(const Contact& contact, double largestError) const {
   const Known* known = knownAt(contact);
   if (!known) return {};
   const std::vector<double>& radii = island_.assembly.radii;
   const double elapsed = island_.time - time_, speed = openingSpeed(contact, island_.state);
-  const double way = fastestSpeed(contact, island_.state, radii) * elapsed;
+  const double way = slidingSpeed(contact, island_.state, radii) * elapsed;
   const double timeRounding = std::numeric_limits<double>::epsilon() * island_.time;
   const double error = known->gap.error + std::abs(speed - known->speed) * elapsed + std::abs(speed) * timeRounding +
                        way * way / smallestSize(contact, radii);
@@ -48,6 +48,19 @@ std::optional<KnownGaps::Gap> KnownGaps::find(const Contact& contact, double lar
   const bool staysClosed =
       known->gap.gap <= known->gap.error && speed > 0 && speed <= tolerances_.minOpeningSpeed(tolerances_.scales.size);
   return Gap{known->gap.gap + (staysClosed ? 0 : speed * elapsed), error};
+}
+
+std::optional<KnownGaps::Closing> KnownGaps::nextHidden() const {
+  std::optional<Closing> next;
+  for (const Known& known : known_) {
+    const double hidden =
+        EventTolerances::kHiddenGapRatio * tolerances_.gapRounding(known.contact.point.cwiseAbs().maxCoeff());
+    const bool isHidden = known.gap.gap <= hidden && known.gap.gap > EventTolerances::kKnownGapRatio * known.gap.error;
+    if (!isHidden || !(known.speed < -kRestSpeedFloor)) continue;
+    const double time = time_ + known.gap.gap / -known.speed;
+    if (time > island_.time && (!next || time < next->time)) next = Closing{time, known.contact.pair};
+  }
+  return next;
 }
 
 const KnownGaps::Known* KnownGaps::knownAt(const Contact& contact) const {

@@ -28,6 +28,15 @@ class KnownGaps {
   /// The gap of a contact now, if its error is below `largestError` (m).
   std::optional<Gap> find(const Contact& contact, double largestError) const;
 
+  /// A gap that closes.
+  struct Closing {
+    double time = 0;       // s
+    std::size_t pair = 0;  // index into ContactGeometry::pairs
+  };
+
+  /// The next gap to close after now of those that are too small for places to show that they are open.
+  std::optional<Closing> nextHidden() const;
+
  private:
   struct Known {
     ColliderPair pair;

@@ -38,7 +38,7 @@ struct StruckBall : OneIsland {
 };
 
 TEST(KnownGaps, GrowBySpeedTimesTime) {
-  StruckBall ball({0, 0.5, 0});
+  StruckBall ball({0.5, 0.5, 0});
   ball.island.time += 1e-9;
   const auto gap = ball.gaps.find(ball.contact(), kLargestError);
   ASSERT_TRUE(gap);
