@@ -18,7 +18,9 @@ constexpr double kApartWindows = 4, kApartMargin = 0.5;
 constexpr double kMeetingMargin = 0.05;      // of a radius: bodies that come nearer within a window are taken to meet
 constexpr double kFastRatio = 0.25;          // of the bodies that move: they go farther than their radii in a window
 constexpr double kPartingEvaluations = 100;  // of equations in a window: some eight steps
-constexpr double kMaxStretch = 16;           // of windows, while there is one island and nothing to part
+constexpr double kMaxStretch = 16;           // of windows, while there is one island
+constexpr double kShortestRatio = 1e-6;      // of the longest window: faster bodies go farther than their radii in one
+constexpr double kStretchedRatio = 1e-4;     // of it: while nothing comes near, windows of fast bodies are as long
 constexpr std::size_t kManyIslands = 1000;   // of more, 3 kB each of steps' stages are freed between windows
 constexpr long kMaxFrames = 100;             // in a window, each of which is kept until it counts
 constexpr double kTouchMargin = 1e-6;        // of a radius: far more than tolerances of contact
@@ -67,7 +69,7 @@ IslandGroup::IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly al
   for (const int body : all_.sceneBodies) clusterOfBody_.push_back(clusters_.of(body));
   start_ = {0, all_.state, std::vector<JointState>(all_.joints.size())};
   DisjointSets joined(clusters_.count());
-  visitNear(kApartWindows * windowLength(), kApartMargin, [&](int a, int b) { joined.join(a, b); });
+  visitNear(kApartWindows * windowLength(), kApartMargin, [&](int a, int b) { return joined.join(a, b), true; });
   regroup(setsOf(std::move(joined)));
   addWindow(0, {});
 }
@@ -80,8 +82,9 @@ const VectorX& IslandGroup::stateAt(double time, const std::function<void(double
     if (islands_.size() == 1 && !mayPart()) {
       stretch_ = std::min(2 * stretch_, kMaxStretch);
     } else {
-      stretch_ = 1;
       regroupFor(length);
+      const double stretch = std::min(2 * stretch_, kStretchedRatio * longestWindow() / length);
+      stretch_ = stretch > 1 && stayApart(stretch * length) ? stretch : 1;
     }
     addWindow(std::min(stretch_ * length, longestWindow()), reached);
   }
@@ -105,7 +108,8 @@ double IslandGroup::longestWindow() const {
   return std::min(scene_.duration, frameTime(scene_, kMaxFrames));
 }
 
-/// s: the time in which three of four bodies that move go no farther than their radii, but no more than kMaxFrames.
+/// s: the time in which three of four bodies that move go no farther than their radii, within kShortestRatio and
+/// kMaxFrames.
 double IslandGroup::windowLength() const {
   const double longest = longestWindow();
   const double gravity = all_.mechanism.gravity.norm();
@@ -118,7 +122,7 @@ double IslandGroup::windowLength() const {
   if (times.empty()) return std::min(longest, timeToGo(all_.smallestSize, 0, gravity));
   const auto found = times.begin() + static_cast<std::ptrdiff_t>(kFastRatio * static_cast<double>(times.size()));
   std::nth_element(times.begin(), found, times.end());
-  return std::min(*found, longest);
+  return std::clamp(*found, kShortestRatio * longest, longest);
 }
 
 /// Moves all islands on by a time (s), or to the end of the scene.
@@ -148,7 +152,7 @@ void IslandGroup::moveAll(double end, const std::function<void(double time)>& re
 /// Joins what is about to meet, and parts what stays apart.
 void IslandGroup::regroupFor(double window) {
   DisjointSets joined = mayPart() ? nearWithinIslands(kApartWindows * window) : islandsNow();
-  visitNear(window, kMeetingMargin, [&](int a, int b) { joined.join(a, b); });
+  visitNear(window, kMeetingMargin, [&](int a, int b) { return joined.join(a, b), true; });
   const std::vector<std::vector<int>> sets = setsOf(std::move(joined));
   for (const std::vector<int>& set : sets)
     if (!islandOf(set))
@@ -172,6 +176,7 @@ DisjointSets IslandGroup::nearWithinIslands(double horizon) const {
   DisjointSets joined = twins_.together();
   visitNear(horizon, kApartMargin, [&](int a, int b) {
     if (islandIndexOf(a) == islandIndexOf(b)) joined.join(a, b);
+    return true;
   });
   for (const Island& island : islands_)
     if (!isWorthParting(island))
@@ -219,8 +224,9 @@ void IslandGroup::place(const Island& island, const VectorX& part, VectorX& all)
   }
 }
 
-/// Visits clusters with bodies that come nearer than a part of their radii in a time (s) of free flight.
-void IslandGroup::visitNear(double horizon, double margin, const std::function<void(int, int)>& visit) const {
+/// Visits clusters with bodies that come nearer than a part of their radii in a time (s) of free flight, as long as
+/// `visit` returns true.
+void IslandGroup::visitNear(double horizon, double margin, const std::function<bool(int, int)>& visit) const {
   std::vector<Bounds> boxes;
   std::vector<double> radii;
   std::vector<int> clusters;
@@ -238,9 +244,17 @@ void IslandGroup::visitNear(double horizon, double margin, const std::function<v
     spheres.push_back(sphereAround(box, radii.back()));
   }
   forEachNearPair(spheres, [&](std::size_t a, std::size_t b) {
-    if (clusters[a] != clusters[b] && areNear(boxes[a], radii[a], boxes[b], radii[b])) visit(clusters[a], clusters[b]);
+    if (clusters[a] != clusters[b] && areNear(boxes[a], radii[a], boxes[b], radii[b]))
+      return visit(clusters[a], clusters[b]);
     return true;
   });
+}
+
+/// Whether no two islands come near each other in a time (s) of free flight.
+bool IslandGroup::stayApart(double horizon) const {
+  bool apart = true;
+  visitNear(horizon, kApartMargin, [&](int a, int b) { return apart = islandIndexOf(a) == islandIndexOf(b); });
+  return apart;
 }
 
 /// Makes islands of sets of clusters, which begin at the window's start; those that stay as they are go on.

@@ -90,7 +90,8 @@ class IslandGroup {
   DisjointSets islandsNow() const;
   std::size_t islandIndexOf(int cluster) const { return islandOfCluster_[static_cast<std::size_t>(cluster)]; }
   Island& islandAt(int cluster) { return islands_[islandIndexOf(cluster)]; }
-  void visitNear(double horizon, double margin, const std::function<void(int clusterA, int clusterB)>& visit) const;
+  void visitNear(double horizon, double margin, const std::function<bool(int clusterA, int clusterB)>& visit) const;
+  bool stayApart(double horizon) const;
   std::vector<std::vector<int>> setsOf(DisjointSets joined) const;
   std::optional<std::size_t> islandOf(const std::vector<int>& set) const;
   void stepToStart(Island& island);

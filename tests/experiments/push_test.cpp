@@ -131,5 +131,23 @@ TEST(Push, WakesABodyThatLies) {
   EXPECT_NEAR(endOf(run).position.y() - 0.1, height, 1e-9);
 }
 
+// Two balls, one of them beyond all that could come near it: whether it goes by ten or by 1e17 m in a frame, and by how
+// many of its radii, is no matter to the other one, nor to how long the run takes.
+TEST(Push, OfAnyForceEnds) {
+  for (const double radius : {1e-7, 0.1})
+    for (const double force : {1e3, 1e10, 1e20}) {
+      const Trajectory run = simulate(sceneWith(fmt::format(
+          R"("duration": 1, "output": {{"framesPerSecond": 10}}, "bodies": [
+            {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static"}},
+            {{"name": "pushed", "mass": 1, "shape": {{"sphere": {{"radius": {0}}}}}, "position": [0, 2, 0]}},
+            {{"name": "other", "mass": 1, "shape": {{"sphere": {{"radius": {0}}}}}, "position": [3, 20, 0]}}],
+          "pushes": [{{"body": "pushed", "point": [0, 0, 0], "force": [0, {1}, 0], "start": 0.1, "duration": 0.1}}])",
+          radius, force)));
+      const std::vector<BodyState>& end = run.frames.back().states;
+      EXPECT_NEAR(end[0].linearVelocity.y(), 0.1 * force - 9.81, 1e-12 * force) << radius << " " << force;
+      EXPECT_NEAR(end[1].position.y(), 20 - 9.81 / 2, 1e-9) << radius << " " << force;
+    }
+}
+
 }  // namespace
 }  // namespace cradle
