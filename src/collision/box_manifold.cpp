@@ -16,9 +16,9 @@
 namespace cradle {
 namespace {
 
-// Lengths in m. Their scale is the millimetre by which two bodies may move against each other before soft contacts
-// renew a manifold. With ten times kBeside boxes are found to be deeper than they are; a tenth or ten times as much of
-// the others, and of kSliding and kMinClosing, changes no test of pairs of boxes.
+// Lengths in m, times the scale of small bodies. They come from the millimetre by which two bodies may move against
+// each other before soft contacts renew a manifold. With ten times kBeside boxes are found to be deeper than they are;
+// a tenth or ten times as much of the others, and of kSliding and kMinClosing, changes no test of pairs of boxes.
 constexpr double kApart = 1e-3;           // boxes nearer than that touch, and their axis is that of least overlap
 constexpr double kSidePreference = 5e-4;  // edges carry contact only where they are clearly farther apart than sides
 constexpr double kBeside = 2e-3;          // edges of sides that are beside each other are farther apart by as much
@@ -39,10 +39,12 @@ struct Axis {
 /// Both boxes in A's frame.
 class BoxPair {
  public:
-  BoxPair(const PosedBox& a, const PosedBox& b, const Vec3& motion, double margin)
+  BoxPair(const PosedBox& a, const PosedBox& b, const Vec3& motion, double margin, double scale)
       : a_(a),
         b_(b),
         margin_(margin),
+        scale_(scale),
+        apart_(scale * kApart),
         reach_(margin + 2 * motion.norm()),
         aFromB_(a.axes.transpose() * b.axes),
         cosines_(aFromB_.cwiseAbs()),
@@ -67,11 +69,11 @@ class BoxPair {
   }
 
   PredictedManifold contact() const {
-    const bool areApart = std::max(side_.separation, edges_.separation) > kApart;
-    const double aligned = motion_.squaredNorm() > kSliding * kSliding ? kAlignedSliding : kAligned;
+    const bool areApart = std::max(side_.separation, edges_.separation) > apart_;
+    const double aligned = motion_.norm() > scale_ * kSliding ? kAlignedSliding : kAligned;
     const bool byEdges = hasEdges_ && edgeNormal().dot(sideNormal()) < aligned &&
                          (areApart ? closingTime(edges_) > closingTime(side_) && edges_.separation > 0
-                                   : edges_.separation > side_.separation + kSidePreference);
+                                   : edges_.separation > side_.separation + scale_ * kSidePreference);
     if (byEdges) return edgeContact(edges_, wayUntilClosed(edges_, areApart));
     const Vec3 ahead = wayUntilClosed(side_, areApart);
     return side_.ofA >= 0 ? sideContact(a_, b_, side_.ofA, side_.sign, ahead, true)
@@ -98,14 +100,15 @@ class BoxPair {
     return true;
   }
 
-  static double closingTime(const Axis& axis) {  // in parts of the step
-    if (axis.closing < kMinClosing)
-      return axis.separation > 0 ? std::numeric_limits<double>::infinity() : axis.separation / kMinClosing;
+  double closingTime(const Axis& axis) const {  // in parts of the step
+    const double least = scale_ * kMinClosing;
+    if (axis.closing < least)
+      return axis.separation > 0 ? std::numeric_limits<double>::infinity() : axis.separation / least;
     return axis.separation / axis.closing;
   }
 
-  static bool isBetter(const Axis& axis, const Axis& best) {
-    if (std::max(axis.separation, best.separation) <= kApart) return axis.separation > best.separation;
+  bool isBetter(const Axis& axis, const Axis& best) const {
+    if (std::max(axis.separation, best.separation) <= apart_) return axis.separation > best.separation;
     if (axis.separation <= 0 || best.separation <= 0) return axis.separation > best.separation;
     return closingTime(axis) > closingTime(best);
   }
@@ -156,7 +159,8 @@ class BoxPair {
                                 const Vec3& ahead, bool referenceIsA) const;
 
   const PosedBox &a_, &b_;
-  const double margin_;
+  const double margin_, scale_;
+  const double apart_;  // m
   const double reach_;  // m: corners as near as that count, for boxes turn about the first that touch
   const Mat3 aFromB_, cosines_;
   const Vec3 offset_, motion_;
@@ -223,8 +227,8 @@ PredictedManifold BoxPair::sideContact(const PosedBox& reference, const PosedBox
   if (count == 0) {
     // Beside each other on this side: where edges are clearly farther apart they are what is between the boxes, or what
     // touches would be thrown out of a depth that is none; else the lowest corner must not come below the side.
-    if (hasEdges_ && edges_.separation > side_.separation + kBeside)
-      return edgeContact(edges_, wayUntilClosed(edges_, std::max(side_.separation, edges_.separation) > kApart));
+    if (hasEdges_ && edges_.separation > side_.separation + scale_ * kBeside)
+      return edgeContact(edges_, wayUntilClosed(edges_, std::max(side_.separation, edges_.separation) > apart_));
     corners[0] = lowestCorner, count = 1;
   }
 
@@ -241,14 +245,15 @@ PredictedManifold BoxPair::sideContact(const PosedBox& reference, const PosedBox
   }
   PredictedManifold manifold;
   manifold.normal = referenceIsA ? normal : Vec3(-normal);
-  appendSpanning(points, near, manifold);
+  appendSpanning(points, near, manifold, scale_);
   return manifold;
 }
 
 }  // namespace
 
-PredictedManifold contactOfBoxes(const PosedBox& a, const PosedBox& b, const Vec3& motion, double margin) {
-  BoxPair pair(a, b, motion, margin);
+PredictedManifold contactOfBoxes(const PosedBox& a, const PosedBox& b, const Vec3& motion, double margin,
+                                 double scale) {
+  BoxPair pair(a, b, motion, margin, scale);
   if (pair.findAxis()) return pair.contact();
   PredictedManifold none;
   none.clearance = pair.clearance();

@@ -46,8 +46,9 @@ class CapsulePair {
     findNearest();
   }
 
-  /// Its points nearer than `most` (m) when they meet, as they are before that.
-  PredictedManifold contact(double most) const {
+  /// Its points nearer than `most` (m) when they meet, as they are before that. Lines are bent where they overlap more
+  /// deeply between their ends by more than `bentOverlap` (m).
+  PredictedManifold contact(double most, double bentOverlap) const {
     PredictedManifold manifold;
     manifold.normal = normal_;
     manifold.clearance = gap();
@@ -60,11 +61,11 @@ class CapsulePair {
       if (end.between.dot(normal_) >= kOneManifoldCosine * end.between.norm()) ends[count++] = end;
     }
     const bool isBent =
-        std::none_of(ends, ends + count, [&](const Near& end) { return end.separation < gap() + kBentOverlap; });
+        std::none_of(ends, ends + count, [&](const Near& end) { return end.separation < gap() + bentOverlap; });
     if (isBent) add(nearest_, manifold);
     for (std::size_t k = 0; k < count; ++k) {
       if (isBent && std::abs(ends[k].part - nearest_.part) * length < onePoint_) continue;
-      if (ends[k].separation <= most || ends[k].separation < gap() + kBentOverlap) add(ends[k], manifold);
+      if (ends[k].separation <= most || ends[k].separation < gap() + bentOverlap) add(ends[k], manifold);
     }
     return manifold;
   }
@@ -128,7 +129,8 @@ class CapsulePair {
 
 }  // namespace
 
-PredictedManifold contactOfCapsules(const PosedCapsule& a, const PosedCapsule& b, const Vec3& motion, double margin) {
+PredictedManifold contactOfCapsules(const PosedCapsule& a, const PosedCapsule& b, const Vec3& motion, double margin,
+                                    double scale) {
   PredictedManifold none;
   const double offset = (b.center - a.center).norm() - a.half.norm() - b.half.norm() - a.radius - b.radius;
   const double way = motion.norm();
@@ -144,7 +146,7 @@ PredictedManifold contactOfCapsules(const PosedCapsule& a, const PosedCapsule& b
     pair.move(now * motion);
     part += now;
   }
-  return pair.gap() > margin ? none : pair.contact(margin + way);
+  return pair.gap() > margin ? none : pair.contact(margin + way, scale * kBentOverlap);
 }
 
 PredictedManifold contactOfCapsuleAndPlane(const PosedCapsule& a, const PlaneCollider& b, const Vec3& motion,

@@ -8,7 +8,7 @@ namespace cradle {
 namespace {
 
 // m farther apart than the deepest point: such points carry when bodies tilt a little. The smallest margin with which
-// soft contacts are looked for (kContactMargin in soft_step.cpp): points beyond it are not known in any case.
+// soft contacts are looked for (SoftParameters::kContactMargin): points beyond it are not known in any case.
 constexpr double kMayCarry = 5e-3;
 
 PredictedManifold single(const Vec3& normal, const Vec3& onA, const Vec3& onB) {
@@ -127,7 +127,8 @@ PredictedManifold contactOfSphereAndPlane(const PosedSphere& a, const PlaneColli
   return single(-b.normal, a.center - a.radius * b.normal, a.center - height * b.normal);
 }
 
-PredictedManifold contactOfBoxAndPlane(const PosedBox& a, const PlaneCollider& b, const Vec3& motion, double margin) {
+PredictedManifold contactOfBoxAndPlane(const PosedBox& a, const PlaneCollider& b, const Vec3& motion, double margin,
+                                       double scale) {
   const double reach = margin + std::max(0.0, b.normal.dot(motion));
   const double middle = b.normal.dot(a.center - b.point);
   const Vec3 heights = (a.axes.transpose() * b.normal).cwiseProduct(a.halfSize);
@@ -144,7 +145,7 @@ PredictedManifold contactOfBoxAndPlane(const PosedBox& a, const PlaneCollider& b
     const Vec3 at = a.center + a.axes * signs.cwiseProduct(a.halfSize);
     points[count++] = {at, at - height * b.normal, height};
   }
-  appendSpanning(points, count, manifold);
+  appendSpanning(points, count, manifold, scale);
   return manifold;
 }
 
@@ -157,14 +158,15 @@ PredictedManifold exchanged(PredictedManifold manifold) {
 /// Manifolds are kept while bodies tilt a little. If points that are pressed after the tilt were left out for others
 /// that are farther away, bodies would fall on them, the next manifold would have them instead of others, and heaps
 /// would tremble.
-void appendSpanning(const PredictedManifold::Point* points, std::size_t count, PredictedManifold& manifold) {
+void appendSpanning(const PredictedManifold::Point* points, std::size_t count, PredictedManifold& manifold,
+                    double scale) {
   if (count <= PredictedManifold::kMaxPoints) {
     for (std::size_t k = 0; k < count; ++k) manifold.points[manifold.count++] = points[k];
     return;
   }
   double deepest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < count; ++k) deepest = std::min(deepest, points[k].separation);
-  const auto mayCarry = [&](const PredictedManifold::Point& p) { return p.separation < deepest + kMayCarry; };
+  const auto mayCarry = [&](const PredictedManifold::Point& p) { return p.separation < deepest + scale * kMayCarry; };
   if (std::count_if(points, points + count, mayCarry) > std::ssize(manifold.points)) {
     appendLargest(points, count, mayCarry, manifold);
     return;

@@ -6,6 +6,7 @@
 
 // Contacts of two bodies as one manifold of up to four points, fast: for piles. Found for the coming step: B moves by
 // `motion` (m, world) in it as seen from A. Surfaces that stay apart by more than `margin` (m) have no contact.
+// `scale`: of small bodies, by which lengths of millimetres are multiplied.
 
 namespace cradle {
 
@@ -41,13 +42,16 @@ struct PredictedManifold {
 
 PredictedManifold contactOfSpheres(const PosedSphere& a, const PosedSphere& b, const Vec3& motion, double margin);
 PredictedManifold contactOfSphereAndBox(const PosedSphere& a, const PosedBox& b, const Vec3& motion, double margin);
-PredictedManifold contactOfBoxes(const PosedBox& a, const PosedBox& b, const Vec3& motion, double margin);
+PredictedManifold contactOfBoxes(const PosedBox& a, const PosedBox& b, const Vec3& motion, double margin,
+                                 double scale = 1);
 PredictedManifold contactOfSphereAndPlane(const PosedSphere& a, const PlaneCollider& b, const Vec3& motion,
                                           double margin);
-PredictedManifold contactOfCapsules(const PosedCapsule& a, const PosedCapsule& b, const Vec3& motion, double margin);
+PredictedManifold contactOfCapsules(const PosedCapsule& a, const PosedCapsule& b, const Vec3& motion, double margin,
+                                    double scale = 1);
 PredictedManifold contactOfCapsuleAndPlane(const PosedCapsule& a, const PlaneCollider& b, const Vec3& motion,
                                            double margin);
-PredictedManifold contactOfBoxAndPlane(const PosedBox& a, const PlaneCollider& b, const Vec3& motion, double margin);
+PredictedManifold contactOfBoxAndPlane(const PosedBox& a, const PlaneCollider& b, const Vec3& motion, double margin,
+                                       double scale = 1);
 
 /// The same contact with A and B exchanged.
 PredictedManifold exchanged(PredictedManifold manifold);
@@ -55,6 +59,7 @@ PredictedManifold exchanged(PredictedManifold manifold);
 /// Adds the four of `count` points that hold a manifold best; all of them if there are no more. Points that may carry,
 /// those that are hardly farther apart than the deepest, come first. Of more than four such points the deepest is
 /// taken, the farthest from it, and those that span the largest areas on either side of both.
-void appendSpanning(const PredictedManifold::Point* points, std::size_t count, PredictedManifold& manifold);
+void appendSpanning(const PredictedManifold::Point* points, std::size_t count, PredictedManifold& manifold,
+                    double scale = 1);
 
 }  // namespace cradle

@@ -21,9 +21,10 @@ constexpr std::size_t kAhead = 2;       // blocks: the motions that they need ar
 constexpr double kPi = 3.14159265358979324;
 
 /// A damped spring, implicit in the sub-step (E. Catto, "Soft Constraints", GDC 2011).
-Softness softnessOf(int points, double subStep) {
-  return {2 * kPi * SoftParameters::kFrequencies[points - 1] * subStep, 2 * SoftParameters::kDampingRatio,
-          SoftParameters::kHardening, SoftParameters::kMaxPush};
+Softness softnessOf(int points, double subStep, const SoftScale& scale) {
+  return {2 * kPi * SoftParameters::kFrequencies[points - 1] * (subStep / scale.time),
+          2 * SoftParameters::kDampingRatio, SoftParameters::kHardening / scale.length,
+          SoftParameters::kMaxPush * scale.speed()};
 }
 
 template <class Block>
@@ -126,8 +127,8 @@ void SoftContactSolver::sweep(const SolverMotions& motions, WorkerThreads& threa
 
 void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions, WorkerThreads& threads) {
   const Lanes subStep = same(steps.subStep);
-  const Softness soft[] = {softnessOf(1, steps.subStep), softnessOf(2, steps.subStep), softnessOf(3, steps.subStep),
-                           softnessOf(4, steps.subStep)};
+  const auto softness = [&](int points) { return softnessOf(points, steps.subStep, scale_); };
+  const Softness soft[] = {softness(1), softness(2), softness(3), softness(4)};
   const Vec3 gain = steps.subStep * gravity;
   const Lanes gainXy{gain.x(), gain.y()}, gainZ{gain.z(), 0};
   threads.run([&](int thread) {

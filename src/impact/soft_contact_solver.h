@@ -6,6 +6,7 @@
 #include "core/worker_threads.h"
 #include "impact/contact_blocks.h"
 #include "impact/contact_colors.h"
+#include "impact/soft_scale.h"
 
 namespace cradle {
 
@@ -13,6 +14,8 @@ namespace cradle {
 /// contacts at a time; the result does not depend on the number of threads.
 class SoftContactSolver {
  public:
+  explicit SoftContactSolver(const SoftScale& scale = {}) : scale_(scale) {}
+
   /// Arranges the manifolds for sub-steps of that length (s).
   void prepare(const ContactColors& colors, const std::vector<PersistentManifold>& manifolds,
                const std::vector<SolverBody>& bodies, double subStep, WorkerThreads& threads);
@@ -60,6 +63,7 @@ class SoftContactSolver {
     bool isShared;                      // by all threads
   };
 
+  const SoftScale scale_;
   BlockLists lists_;
   std::vector<Task> tasks_;
   std::size_t colors_ = 0;

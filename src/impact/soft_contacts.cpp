@@ -33,7 +33,8 @@ PersistentManifold::Anchor inBody(const MovingPose& pose, const Vec3& vector) {
 
 }  // namespace
 
-SoftContacts::SoftContacts(const ContactGeometry& geometry) : geometry_(geometry), generator_(geometry) {}
+SoftContacts::SoftContacts(const ContactGeometry& geometry, const SoftScale& scale)
+    : geometry_(geometry), scale_(scale), generator_(geometry, scale.length) {}
 
 void SoftContacts::takePairs() {
   taken_.clear();
@@ -107,9 +108,10 @@ double SoftContacts::approachOf(const NearPair& pair, const SoftStepStart& look)
   if (a.isAsleep && (pair.bodyB == kFixed || b.isAsleep)) return 0;
   using Soft = SoftParameters;
   const bool areSpheres = a.spinRadius == 0 && (pair.againstPlane || b.spinRadius == 0);
+  const double pressed = scale_.speed() * Soft::kPressed;
   const auto counted = [&](double speed) {
     return areSpheres ? Soft::kBallRatio * speed
-                      : std::min(speed, Soft::kPressed) + Soft::kQuickRatio * std::max(0.0, speed - Soft::kPressed);
+                      : std::min(speed, pressed) + Soft::kQuickRatio * std::max(0.0, speed - pressed);
   };
   const double spin = Soft::kSpinRatio * (a.spinSpeed + b.spinSpeed);
   const Vec3 velocity = b.linearVelocity - a.linearVelocity;
@@ -218,7 +220,8 @@ void SoftContacts::updatePair(NearPair& pair, const SoftStepStart& look, std::ve
   PersistentManifold& manifold = manifolds_[static_cast<std::size_t>(pair.manifold)];
   const Vec3 offset = poseB.position - poseA.position;
   const double turned = poseA.turned + poseB.turned;
-  constexpr double keptMotion = SoftParameters::kKeptMotion, slowSliding = SoftParameters::kSlowSliding;
+  const double keptMotion = scale_.length * SoftParameters::kKeptMotion;
+  const double slowSliding = scale_.speed() * SoftParameters::kSlowSliding;
   if (!pair.isEmpty && (offset - pair.offset).squaredNorm() <= keptMotion * keptMotion &&
       turned - pair.turned <= SoftParameters::kKeptTurn) {
     follow(pair, poseA, poseB, manifold);

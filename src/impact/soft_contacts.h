@@ -7,6 +7,7 @@
 #include "collision/persistent_manifold.h"
 #include "core/worker_threads.h"
 #include "impact/soft_manifolds.h"
+#include "impact/soft_scale.h"
 #include "impact/swept_bounds.h"
 
 namespace cradle {
@@ -15,7 +16,7 @@ namespace cradle {
 class SoftContacts {
  public:
   /// Keeps a reference to `geometry`, whose pairs change from step to step.
-  explicit SoftContacts(const ContactGeometry& geometry);
+  explicit SoftContacts(const ContactGeometry& geometry, const SoftScale& scale = {});
 
   /// To be called when geometry.pairs is a new list: manifolds of pairs that stay are kept.
   void takePairs();
@@ -82,6 +83,7 @@ class SoftContacts {
                     PersistentManifold& manifold);
 
   const ContactGeometry& geometry_;
+  const SoftScale scale_;
   SoftManifolds generator_;
   std::vector<std::vector<Contact>> scratch_;  // of each thread
   std::vector<NearPair> pairs_, taken_;        // those of geometry.pairs as last taken; taken_: scratch

@@ -10,7 +10,7 @@ constexpr double kSamePatchNormal = 0.9;  // cosine, at least, for contacts to b
 
 }  // namespace
 
-SoftManifolds::SoftManifolds(const ContactGeometry& geometry) : geometry_(geometry) {
+SoftManifolds::SoftManifolds(const ContactGeometry& geometry, double scale) : geometry_(geometry), scale_(scale) {
   for (const Collider& collider : geometry.colliders) {
     boxes_.push_back(boxOf(collider));
     const bool isBox = boxes_.back().has_value(), isCapsule = collider.kind() == ColliderKind::capsule;
@@ -86,16 +86,16 @@ PredictedManifold SoftManifolds::manifoldOfFastShapes(const SoftPair& pair, cons
     const PlaneCollider& plane = geometry_.planes[pair.shapeB];
     if (shapes_[pair.shapeA] == Shape::capsule)
       return contactOfCapsuleAndPlane(capsuleAt(a, poseA), plane, motion, margin);
-    return boxA ? contactOfBoxAndPlane(boxAt(*boxA, poseA), plane, motion, margin)
+    return boxA ? contactOfBoxAndPlane(boxAt(*boxA, poseA), plane, motion, margin, scale_)
                 : contactOfSphereAndPlane(sphereAt(a, poseA), plane, motion, margin);
   }
   const Collider& b = geometry_.colliders[pair.shapeB];
   const auto& boxB = boxes_[pair.shapeB];
-  if (boxA && boxB) return contactOfBoxes(boxAt(*boxA, poseA), boxAt(*boxB, poseB), motion, margin);
+  if (boxA && boxB) return contactOfBoxes(boxAt(*boxA, poseA), boxAt(*boxB, poseB), motion, margin, scale_);
   if (boxB) return contactOfSphereAndBox(sphereAt(a, poseA), boxAt(*boxB, poseB), motion, margin);
   if (boxA) return exchanged(contactOfSphereAndBox(sphereAt(b, poseB), boxAt(*boxA, poseA), -motion, margin));
   if (shapes_[pair.shapeA] == Shape::capsule || shapes_[pair.shapeB] == Shape::capsule)
-    return contactOfCapsules(capsuleAt(a, poseA), capsuleAt(b, poseB), motion, margin);
+    return contactOfCapsules(capsuleAt(a, poseA), capsuleAt(b, poseB), motion, margin, scale_);
   return contactOfSpheres(sphereAt(a, poseA), sphereAt(b, poseB), motion, margin);
 }
 
@@ -121,7 +121,7 @@ PredictedManifold SoftManifolds::manifoldOfAnyShapes(const SoftPair& pair, const
     const Vec3 half = contact.separation / 2 * contact.normal;
     points[count++] = {contact.point - half, contact.point + half, contact.separation};
   }
-  appendSpanning(points, count, manifold);
+  appendSpanning(points, count, manifold, scale_);
   return pair.isExchanged ? exchanged(manifold) : manifold;
 }
 

@@ -51,8 +51,8 @@ struct SoftPair {
 /// shapes through the general search.
 class SoftManifolds {
  public:
-  /// Keeps a reference to `geometry`.
-  explicit SoftManifolds(const ContactGeometry& geometry);
+  /// Keeps a reference to `geometry`. `scale`: of lengths, as collision/predicted_manifold.h has it.
+  explicit SoftManifolds(const ContactGeometry& geometry, double scale = 1);
 
   SoftPair pairOf(std::size_t index) const;
 
@@ -74,6 +74,7 @@ class SoftManifolds {
                                         std::vector<Contact>& scratch) const;
 
   const ContactGeometry& geometry_;
+  const double scale_;
   std::vector<std::optional<BoxShape>> boxes_;  // of each collider
   std::vector<Shape> shapes_;                   // of each collider
 };

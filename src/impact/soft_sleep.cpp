@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "impact/soft_parameters.h"
-
 namespace cradle {
 namespace {
 
@@ -21,8 +19,9 @@ double closingSpeed(const PersistentManifold& manifold, const MovingPose& a, con
 
 }  // namespace
 
-SoftSleep::SoftSleep(std::vector<double> masses)
+SoftSleep::SoftSleep(std::vector<double> masses, double stillTime)
     : masses_(std::move(masses)),
+      stillTime_(stillTime),
       stillTimes_(masses_.size(), 0.0),
       isAsleep_(masses_.size(), 0),
       hasMovingNeighbor_(masses_.size(), 0),
@@ -49,7 +48,7 @@ void SoftSleep::wakeTouched(const SoftContacts& contacts, const std::vector<Movi
 void SoftSleep::wake(int body, std::vector<int>& woken) {
   const std::size_t index = static_cast<std::size_t>(body);
   isAsleep_[index] = 0;
-  stillTimes_[index] = SoftParameters::kStillTime / 2;  // not restless before it has moved
+  stillTimes_[index] = stillTime_ / 2;  // not restless before it has moved
   ++awake_;
   woken.push_back(body);
 }
@@ -97,13 +96,11 @@ void SoftSleep::letSleep(const SoftContacts& contacts, const std::vector<double>
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     if (isAsleep_[i]) continue;
     stillTimes_[i] = speeds[i] < slow ? stillTimes_[i] + timeStep : 0;
-    someAreStill = someAreStill || stillTimes_[i] >= SoftParameters::kStillTime;
+    someAreStill = someAreStill || stillTimes_[i] >= stillTime_;
   }
   if (!someAreStill) return;
   std::fill(hasMovingNeighbor_.begin(), hasMovingNeighbor_.end(), 0);
-  const auto isMovingFast = [&](std::size_t body) {
-    return !isAsleep_[body] && stillTimes_[body] < SoftParameters::kStillTime;
-  };
+  const auto isMovingFast = [&](std::size_t body) { return !isAsleep_[body] && stillTimes_[body] < stillTime_; };
   for (const ManifoldLink& link : contacts.active()) {
     if (!bothMove(link)) continue;
     const std::size_t a = static_cast<std::size_t>(link.bodyA), b = static_cast<std::size_t>(link.bodyB);

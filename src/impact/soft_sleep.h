@@ -11,8 +11,8 @@ namespace cradle {
 /// can move: one body that rolls over a heap leaves the rest asleep.
 class SoftSleep {
  public:
-  /// All are awake. `masses` in kg.
-  explicit SoftSleep(std::vector<double> masses);
+  /// All are awake. `masses` in kg; `stillTime` (s): bodies fall asleep when they have been slow for so long.
+  SoftSleep(std::vector<double> masses, double stillTime);
 
   bool isAsleep(std::size_t body) const { return isAsleep_[body] != 0; }
   std::size_t awake() const { return awake_; }
@@ -36,6 +36,7 @@ class SoftSleep {
   void listNeighbors(const SoftContacts& contacts);
 
   std::vector<double> masses_;      // kg
+  double stillTime_;                // s
   std::vector<double> stillTimes_;  // s, for which each body has been slow
   std::vector<char> isAsleep_, hasMovingNeighbor_;
   std::size_t awake_;

@@ -47,9 +47,11 @@ SoftStep::SoftStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
       geometry_(geometry),
       gravity_(gravity),
       threads_(threads),
+      scale_(scaleOf(geometry_)),
       broadPhase_(threads_),
-      contacts_(geometry_),
-      sleep_(massesOf(bodies)) {
+      contacts_(geometry_, scale_),
+      solver_(scale_),
+      sleep_(massesOf(bodies), scale_.time * SoftParameters::kStillTime) {
   const std::size_t count = bodies.size();
   geometry_.pairs.clear();
   for (const RigidBody& body : bodies) {
@@ -92,16 +94,16 @@ void SoftStep::advance(double timeStep, VectorX& state) {
 
   // How fast do bodies approach each other, and how often must they be looked at for that?
   placeBodies(timeStep, state);
-  const double mostMargin = Soft::kContactMargin + Soft::kDeflected * Soft::kMaxApproach;
+  const double maxApproach = scale_.length * Soft::kMaxApproach, margin = scale_.length * Soft::kContactMargin;
+  const double mostMargin = margin + Soft::kDeflected * maxApproach;
   if (broadPhase_.update({state, reaches_, displacements_}, mostMargin, geometry_)) contacts_.takePairs();
   const double approach = timeStep * contacts_.fastestApproach({poses_, state, timeStep, mostMargin}, threads_);
-  const int substepGroups =
-      std::clamp(static_cast<int>(std::ceil(approach / Soft::kMaxApproach)), 1, Soft::kMaxSubstepGroups);
-  const int fewest =
-      static_cast<int>(std::ceil(std::min(approach / substepGroups, Soft::kMaxApproach) / Soft::kMaxSubStepApproach));
+  const int substepGroups = std::clamp(static_cast<int>(std::ceil(approach / maxApproach)), 1, Soft::kMaxSubstepGroups);
+  const double groupApproach = std::min(approach / substepGroups, maxApproach);
+  const int fewest = static_cast<int>(std::ceil(groupApproach / (scale_.length * Soft::kMaxSubStepApproach)));
   const int subSteps = std::max(
       ((isDisturbed_ ? Soft::kDisturbedSubSteps : Soft::kSubSteps) + substepGroups - 1) / substepGroups, fewest);
-  margin_ = Soft::kContactMargin + Soft::kDeflected * std::min(approach / substepGroups, Soft::kMaxApproach);
+  margin_ = margin + Soft::kDeflected * groupApproach;
 
   contacts_.beginStep();
   for (int substepGroup = 0; substepGroup < substepGroups; ++substepGroup) {

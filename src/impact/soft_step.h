@@ -20,10 +20,11 @@ class SoftStep {
 
   /// Bodies of colliders that are driven are led: gravity does not pull them, and they go through a step with the
   /// velocity that they have at its start, save for what contacts do to a body as heavy as they are said to be. Moves
-  /// the state (layout of dynamics/state.h; orientations of unit length) on by `timeStep` (s), at most 1/60 for heaps
-  /// to stay still. Orientations stay of unit length; the ledger is left as it is.
+  /// the state (layout of dynamics/state.h; orientations of unit length) on by `timeStep` (s), at most 1/60 (by the
+  /// scale) for heaps to stay still. Orientations stay of unit length; the ledger is left as it is.
   void advance(double timeStep, VectorX& state);
 
+  const SoftScale& scale() const { return scale_; }
   bool allAsleep() const { return sleep_.awake() == 0; }
   bool isAsleep(std::size_t body) const { return sleep_.isAsleep(body); }
   /// The contacts of the last detection.
@@ -62,6 +63,7 @@ class SoftStep {
   ContactGeometry& geometry_;
   const Vec3 gravity_;
   WorkerThreads threads_;
+  const SoftScale scale_;
   BroadPhase broadPhase_;
   SoftContacts contacts_;
   ContactColoring coloring_;

@@ -48,10 +48,10 @@ int threadsFor(std::size_t bodies) {
 SoftSubsteps::SoftSubsteps(Assembly assembly, double longestStep, std::optional<int> threads)
     : assembly_(std::move(assembly)),
       state_(assembly_.state),
-      longestStep_(longestStep),
       bodies_(withHeavyDriven(assembly_)),
       step_(bodies_, assembly_.geometry, assembly_.mechanism.gravity,
             threads.value_or(threadsFor(assembly_.mechanism.bodies.size()))),
+      longestStep_(step_.scale().time * longestStep),
       startEnergy_(energyConstant(assembly_.mechanism, state_)) {
   normalizeOrientations(state_);
   innerRadii_.assign(bodies_.size(), std::numeric_limits<double>::infinity());

@@ -12,7 +12,8 @@ namespace cradle {
 /// An island of many bodies that gravity, contact and driven bodies move, in motion: by soft sub-stepping.
 class SoftSubsteps {
  public:
-  /// Steps end at the times asked for, and are no longer than `longestStep` (s). Without `threads`, large heaps take as
+  /// Steps end at the times asked for, and are no longer than `longestStep` (s), of small bodies by their SoftScale.
+  /// Without `threads`, large heaps take as
   /// many as the machine has; the result is the same for any number.
   SoftSubsteps(Assembly assembly, double longestStep, std::optional<int> threads = std::nullopt);
   SoftSubsteps(const SoftSubsteps&) = delete;
@@ -41,9 +42,9 @@ class SoftSubsteps {
 
   Assembly assembly_;
   VectorX state_;
-  double longestStep_;
   std::vector<RigidBody> bodies_;  // those of the mechanism, driven ones as heavy bodies
   SoftStep step_;
+  double longestStep_;              // s
   std::vector<double> innerRadii_;  // m, of the bodies; infinite without a collider
   VectorX led_;                     // state in which the step under way began
   double startEnergy_ = 0;          // J

@@ -11,7 +11,7 @@
 namespace cradle {
 
 /// Balls of radius 0.1 m, cubes of 0.2 m and capsules 0.32 m long and 0.12 m wide, 1 kg each, over planes, with a step
-/// of 1/60 s.
+/// of 1/60 s (less of small bodies that are added, by their SoftScale).
 class DroppedBodies {
  public:
   static constexpr double kHalf = 0.1, kCapsuleRadius = 0.06, kTimeStep = 1.0 / 60;
@@ -56,7 +56,7 @@ class DroppedBodies {
     step_ = std::make_unique<SoftStep>(bodies_, geometry_, gravity, threads);
   }
   void advance(int steps = 1) {
-    for (int i = 0; i < steps; ++i) step_->advance(kTimeStep, state_);
+    for (int i = 0; i < steps; ++i) step_->advance(step_->scale().time * kTimeStep, state_);
   }
 
   VectorX& state() { return state_; }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "impact/posed_bodies.h"
+#include "impact/soft_parameters.h"
 
 namespace cradle {
 namespace {
@@ -18,7 +19,7 @@ constexpr double kStep = 1.0 / 64;         // s: 32 of them are half a second
 
 /// Balls of 0.1 m in a row on a floor, each touching the next, and one apart from them.
 struct SleepyRow : PosedBodies {
-  explicit SleepyRow(const std::vector<double>& masses) : sleep(masses) {
+  explicit SleepyRow(const std::vector<double>& masses) : sleep(masses, SoftParameters::kStillTime) {
     const std::size_t count = masses.size();
     geometry.planes = {{Vec3::Zero(), Vec3::UnitY(), 0}};
     for (std::size_t i = 0; i < count; ++i)
@@ -89,7 +90,7 @@ struct Struck {
     bodies.place();
     WorkerThreads threads(1);
     SoftContacts contacts(bodies.geometry);
-    SoftSleep sleep(masses);
+    SoftSleep sleep(masses, SoftParameters::kStillTime);
     contacts.takePairs();
     contacts.update(bodies.stepStart(), threads);
     std::vector<int> fallen;

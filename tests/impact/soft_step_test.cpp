@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "impact/dropped_bodies.h"
+#include "impact/soft_parameters.h"
 
 namespace cradle {
 namespace {
@@ -265,11 +266,11 @@ double sidewaysIn2s(DroppedBodies& bodies) {
 // The load is the same on all four corners, and no corner comes before another. Rounding, 1e-16 m, grows where a tower
 // is slender: a limit of 1e-9 m leaves 16 e-foldings.
 TEST(Tower, OfEqualBoxesStaysStraight) {
-  for (const Tower& tower :
-       {Tower{5, Vec3::Constant(0.05), 0.02, 0.1}, Tower{25, Vec3::Constant(0.05), 0.02, 0.1},
-        Tower{40, Vec3::Constant(0.2), 0.02, 0.5}, Tower{25, Vec3::Constant(0.2), 0, 0},
-        Tower{25, Vec3::Constant(0.05), 0.002, 0.3}, Tower{13, Vec3(0.05, 0.1, 0.05), 0.01, 0},
-        Tower{25, Vec3(0.2, 0.05, 0.1), 0.02, 0.1}, Tower{20, Vec3(0.02, 0.05, 0.08), 0.02, 0.1}}) {
+  for (const Tower& tower : {Tower{5, Vec3::Constant(0.05), 0.02, 0.1}, Tower{25, Vec3::Constant(0.05), 0.02, 0.1},
+                             Tower{40, Vec3::Constant(0.2), 0.02, 0.5}, Tower{25, Vec3::Constant(0.2), 0, 0},
+                             Tower{25, Vec3::Constant(0.05), 0.002, 0.3}, Tower{13, Vec3(0.05, 0.1, 0.05), 0.01, 0},
+                             Tower{25, Vec3(0.2, 0.05, 0.1), 0.02, 0.1}, Tower{20, Vec3(0.02, 0.05, 0.08), 0.02, 0.1},
+                             Tower{10, Vec3::Constant(0.02), 0, 0}, Tower{25, Vec3::Constant(0.005), 1e-3, 0.1}}) {
     DroppedBodies bodies;
     bodies.addPlane(Vec3::Zero(), Vec3::UnitY());
     for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0.37, 0, -0.41)})
@@ -281,6 +282,43 @@ TEST(Tower, OfEqualBoxesStaysStraight) {
     bodies.begin({tower.restitution, 0.5, 0.5});
     EXPECT_LT(sidewaysIn2s(bodies), 1e-9) << tower.height << " of " << tower.size.transpose() << ", " << tower.gap;
   }
+}
+
+// Froude's similarity: under the same gravity a heap of 1/16 of the size does the same in a quarter of the time. All
+// factors are powers of two, so the bits are the same but for the exponents, if no length, time or speed of the method
+// is left as it is. The larger one has the inner radius from which the parameters hold as they are.
+TEST(SmallHeap, MovesAsALargeOneDoes) {
+  std::vector<VectorX> states;
+  for (const double size : {1.0, 1.0 / 16}) {
+    const double radius = size * SoftParameters::kFullRadius, speed = std::sqrt(size);
+    DroppedBodies bodies;
+    bodies.addTray(8 * radius);
+    for (int i = 0; i < 27; ++i) {
+      const Vec3 cell(i % 3 - 1, 1 + i / 9, i / 3 % 3 - 1);
+      const Vec3 position = radius * (2.5 * cell + 0.25 * Vec3(i % 2, 0, i % 4));
+      const Quat turn = Quat(8, i % 5 - 2, i % 3, i % 7 - 3).normalized();
+      const Vec3 velocity = speed * Vec3(0, i % 5 == 0 ? -3 : 0, 0.5);
+      if (i % 3 == 0)
+        bodies.add(colliderOf(Sphere{radius}, {}), 0.5 * radius * radius * Mat3::Identity(), position, turn, velocity);
+      else if (i % 3 == 1)
+        bodies.add(colliderOf(Box{Vec3::Constant(2 * radius)}, {}), 0.5 * radius * radius * Mat3::Identity(), position,
+                   turn, velocity);
+      else
+        bodies.add(colliderOf(Capsule{radius, 2 * radius}, {}), 0.5 * radius * radius * Mat3::Identity(), position,
+                   turn, velocity);
+    }
+    bodies.begin({0.25, 0.5, 0.5});
+    EXPECT_EQ(bodies.step().scale().length, size);
+    bodies.advance(100);
+    VectorX state = bodies.state();
+    for (int i = 0; i < bodies.count(); ++i) {
+      centerOfMass(state, i) /= size;
+      linearVelocity(state, i) /= speed;
+      angularVelocity(state, i) *= speed;
+    }
+    states.push_back(state);
+  }
+  EXPECT_EQ(states[1], states[0]);
 }
 
 /// How far (m) a cube slides in 1 s down a slope with friction 0.5, after half a second in which it may settle.
