@@ -51,6 +51,10 @@ struct IslandState {
   /// Throws Error(unstable) that names the bodies of a contact that driven bodies press together.
   [[noreturn]] void failAtNoRoom(const Contact& contact) const;
 
+  /// Throws Error(unstable) if a body is squeezed between others of which one is so much heavier that the forces on it,
+  /// rounded, would move it.
+  void requireComparableMasses(const std::vector<Contact>& touching) const;
+
   /// Contact that cannot be computed must not come about: passing through each other silently would be a lie. Throws
   /// Error(scene).
   void requireUnsolvedPairsApart() const;

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -102,6 +103,55 @@ TEST(LightBoxUnderAHeavySlidingBall, EndsThePromiseWhereItsCornersCreep) {
         }
       }
   EXPECT_GT(crept, 0);
+}
+
+/// A ball on the floor, and one of `ratio` times its mass that bounces on it: bounces of 1e-6 m/s and less are as high
+/// as rounding, and gravity brings their gaps together, not their speeds.
+TEST(HeavyBall, ThatBouncesOnALightOneComesToRest) {
+  for (const double ratio : {10.0, 1e3, 1e5, 1e7})
+    for (const double restitution : {0.1, 0.3, 0.5})
+      for (const double height : {0.3 + 1e-6, 0.31, 0.5})
+        for (const double accuracy : {1e-3, 1e-6, 1e-8}) {
+          const std::string what = fmt::format("{} {} {} {}", ratio, restitution, height, accuracy);
+          const Trajectory run = simulate(sceneWith(fmt::format(
+              R"("duration": 1, "accuracy": {}, "materials": {{"m": {{"restitution": {}}}}}, "bodies": [
+      {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+      {{"name": "light", "shape": {{"sphere": {{"radius": 0.1}}}}, "material": "m", "mass": 4.2, "position": [0, 0.1, 0]}},
+      {{"name": "heavy", "shape": {{"sphere": {{"radius": 0.1}}}}, "material": "m", "mass": {}, "position": [0, {}, 0]}}])",
+              accuracy, restitution, 4.2 * ratio, height)));
+          EXPECT_NEAR(run.frames.back().states[0].position.y(), 0.1, 1e-9) << what;
+          EXPECT_NEAR(run.frames.back().states[1].position.y(), 0.3, 1e-9) << what;
+          EXPECT_LT(run.frames.back().energy.kinetic, 1e-20 * ratio) << what;  // J: of some 1e-10 m/s
+          EXPECT_LT(run.cost.evaluations, 100'000) << what;
+        }
+}
+
+/// A ball or a box of 0.1 m half size on the floor, on which a ball of `ratio` times its mass falls.
+Scene heavyBallOn(const std::string& shape, double ratio, const std::string& method) {
+  return sceneWith(fmt::format(R"("duration": 0.5, {}, "materials": {{"m": {{"restitution": 0.3}}}}, "bodies": [
+    {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+    {{"name": "light", "shape": {{{}}}, "material": "m", "mass": 4.2, "position": [0, 0.1, 0]}},
+    {{"name": "heavy", "shape": {{"sphere": {{"radius": 0.1}}}}, "material": "m", "mass": {}, "position": [0, 0.35, 0]}}])",
+                               method, shape, 4.2 * ratio));
+}
+
+// The heavy body's weight, rounded, moves the light one by 1e-16 g times the ratio: 1e-8 g at the limit.
+TEST(HeavyBall, IsCarriedByWhatHasAHundredMillionthOfItsMassAndElseEndsTheRun) {
+  for (const std::string shape : {R"("sphere": {"radius": 0.1})", R"("box": {"size": [0.2, 0.2, 0.2]})"})
+    for (const std::string& method :
+         {std::string(R"("accuracy": 1e-3)"), std::string(R"("accuracy": 1e-6)"), methodText("rk4", 1.0 / 960)}) {
+      SCOPED_TRACE(shape + " " + method);
+      const Trajectory carried = simulate(heavyBallOn(shape, 0.9e8, method));
+      EXPECT_NEAR(carried.frames.back().states[1].position.y(), 0.3, 1e-5);
+      for (const double ratio : {1.1e8, 1e12, 1e15, 1e20, 1e35}) try {
+          simulate(heavyBallOn(shape, ratio, method));
+          ADD_FAILURE() << ratio;
+        } catch (const Error& error) {
+          EXPECT_EQ(error.kind(), ErrorKind::unstable) << ratio;
+          EXPECT_THAT(error.what(), testing::HasSubstr("\"heavy\"")) << ratio;
+          EXPECT_THAT(error.what(), testing::HasSubstr("squeezes \"light\"")) << ratio;
+        }
+    }
 }
 
 }  // namespace

@@ -107,6 +107,7 @@ SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double s
   limits.leastRounding = tolerances_.sphereGapRounding(farthest);
   for (const Contact& contact : near)
     limits.gapErrors.push_back(isOfSphere(contact) ? limits.leastRounding : limits.gapRounding);
+  limits.acceleration = island_.assembly.mechanism.gravity.norm();
   useKnownGaps(near, limits);
   if (std::none_of(near.begin(), near.end(), [&](const Contact& contact) { return isApart(contact, limits); }))
     return limits;
@@ -116,6 +117,7 @@ SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double s
   for (const Contact& contact : near)
     strongest = std::max(strongest, std::abs(openingAcceleration(contact, island_.state, derivative)));
   limits.duration = tolerances_.maxSequenceTime(strongest);
+  limits.acceleration = std::max(limits.acceleration, strongest);
   return limits;
 }
 

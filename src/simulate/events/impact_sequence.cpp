@@ -103,10 +103,13 @@ bool ImpactSequence::next(const VectorX& state) {
   return true;
 }
 
-/// Whether a gap is known so well, however small, that the instant is known at which it closes.
+/// Whether a gap is known so well, however small, that the instant is known at which it closes. Forces, which would
+/// change that, close it by a t^2 / 2 in the time t = s / -s' in which its speed does.
 bool ImpactSequence::closesLater(std::size_t contact) const {
-  return gaps_[contact] > EventTolerances::kKnownGapRatio * gapErrors_[contact] &&
-         gapErrors_[contact] < limits_.leastRounding && gaps_[contact] > -speeds_[contact] * limits_.shortestTime;
+  const double gap = gaps_[contact], time = gap / -speeds_[contact];
+  const double error = gapErrors_[contact] + limits_.acceleration * time * time / 2;
+  return gap > EventTolerances::kKnownGapRatio * error && gapErrors_[contact] < limits_.leastRounding &&
+         time > limits_.shortestTime;
 }
 
 /// At the end of a sequence, closes gaps that rounding would hide from the search for the next event, and whose instant

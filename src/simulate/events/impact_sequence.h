@@ -17,6 +17,7 @@ struct SequenceLimits {
   double touchTolerance = 0;       // m: bound on the gap that the pair of an event seems to have
   double reach = 0;                // m: contacts farther apart are not known, so bodies move by half of it at most
   double duration = 0;             // s: in a longer time forces count
+  double acceleration = 0;         // m/s^2: by which gaps may close beside their speeds
   double stillSpeed = 0;           // m/s: closing more slowly is rounding
   double openingSpeed = 0;         // m/s: a contact without a gap that opens more slowly stays without
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "impact/contact_impulse.h"
 #include "simulate/events/contact_features.h"
@@ -33,15 +34,21 @@ std::vector<Contact> findNear(const IslandState& island, const EventTolerances& 
 void eraseHeld(const IslandState& island, ConstraintSolver& constraints, double still, std::vector<Contact>& contacts) {
   const std::vector<RigidBody>& bodies = island.assembly.mechanism.bodies;
   const ImpulseResponse response(bodies, constraints);
-  const Constraints ties = tiesOf(island.assembly);
-  ConstraintSolver tieSolver(ties, bodies);
-  const bool hasLimits = ties.size() < island.assembly.mechanism.constraints.size();
-  if (hasLimits && tieSolver.hasConstraints()) tieSolver.factorize(island.state);
-  const ImpulseResponse tied(bodies, tieSolver);
+  const bool hasLimits = island.assembly.names.constraints.size() < island.assembly.mechanism.constraints.size();
+  Constraints ties;
+  std::optional<ConstraintSolver> tieSolver;
+  const auto isHeldByTies = [&](const Contact& contact) {
+    if (!tieSolver) {
+      ties = tiesOf(island.assembly);
+      tieSolver.emplace(ties, bodies);
+      if (tieSolver->hasConstraints()) tieSolver->factorize(island.state);
+    }
+    return isImmobile(contact, ImpulseResponse(bodies, *tieSolver), island.state);
+  };
   std::erase_if(contacts, [&](const Contact& contact) {
     if (!isImmobile(contact, response, island.state)) return false;
     const bool closes = openingSpeed(contact, island.state) < -still;
-    if (closes && hasLimits && !isImmobile(contact, tied, island.state)) return false;
+    if (closes && hasLimits && !isHeldByTies(contact)) return false;
     if (closes && !island.assembly.mechanism.driven.empty()) island.failAtNoRoom(contact);
     return true;
   });
@@ -58,6 +65,7 @@ std::vector<Contact> findTouching(const IslandState& island, ConstraintSolver& c
   findFeatures(geometry, island.state, tolerances.leaving, touching);
   for (Contact& contact : touching) moveToRim(geometry, island.state, contact);
   touching.erase(std::unique(touching.begin(), touching.end(), isSameRim), touching.end());
+  island.requireComparableMasses(touching);
   return touching;
 }
 

@@ -97,9 +97,11 @@ void SteppedMotion::advance(double frame) {
   if (time >= static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
 }
 
-/// Ends the run where driven bodies press others into something: no force keeps them apart.
+/// Ends the run where driven bodies press others into something, for no force keeps them apart, and where heavy ones
+/// do.
 void SteppedMotion::requireRoom() const {
   const Assembly& assembly = island_.assembly;
+  island_.requireComparableMasses(contacts_.touching());
   if (assembly.mechanism.driven.empty()) return;
   for (const Contact& contact : contacts_.touching())
     if (contact.separation < -kSqueezed * smallestSize(contact, assembly.radii)) island_.failAtNoRoom(contact);
