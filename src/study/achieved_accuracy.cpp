@@ -106,6 +106,12 @@ std::string textOf(const std::optional<TouchDifference>& difference, const Scene
                      difference->time, difference->isInFirst ? "the run alone" : "the finer run alone");
 }
 
+std::string textOf(const CloseImpacts& impacts, const Scene& scene) {
+  const auto nameOf = [&](int body) { return scene.bodies[static_cast<std::size_t>(body)].name; };
+  return fmt::format("\"{}\" meets \"{}\" and \"{}\" within one of its steps at {:.6g} s", nameOf(impacts.body),
+                     nameOf(impacts.first), nameOf(impacts.second), impacts.time);
+}
+
 std::string faultOf(const AchievedAccuracy& accuracy, const RunEvidence& run, const RunEvidence& finer) {
   const auto isTooDeep = [](const RunEvidence& evidence) {
     return evidence.overlap() && evidence.overlap()->depth > evidence.overlap()->allowed;
@@ -140,7 +146,10 @@ class Comparison {
   void take(long number, double time) {
     const Frame frame = run_.frameAt(number, runEvidence_);
     const Frame finer = finer_->frameAt(number, time), disturbed = disturbed_->frameAt(number, time);
-    for (const Event& event : finer_->takeEvents(time)) finerEvidence_.add(event);
+    for (const Event& event : finer_->takeEvents(time)) {
+      finerEvidence_.add(event);
+      if (stepped_) stepped_->add(event);
+    }
     disturbed_->takeEvents(time);
     if (!finer_->takePromiseEnds().empty()) finerEvidence_.endPromises();
     finerEvidence_.add(finer);
@@ -161,6 +170,7 @@ class Comparison {
     result_.numericalEnergy = runEvidence_.numericalEnergy();
     result_.finerEnergy = finerEvidence_.numericalEnergy();
     if (stepped_) result_.other = stepped_->result();
+    if (stepped_ && result_.other->closeImpacts) result_.closeImpacts = textOf(*result_.other->closeImpacts, scene);
     result_.fault = faultOf(result_, runEvidence_, finerEvidence_);
     const bool isChaos = result_.fault.empty() && growth_.isMeaningless();
     const double until = isChaos ? *result_.divergence->meaninglessFrom : end;

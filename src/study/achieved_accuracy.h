@@ -32,6 +32,7 @@ struct AchievedAccuracy {
   double numericalEnergy = 0, finerEnergy = 0;  // changes of the energies' sum, parts of the largest kinetic one
   std::string touchDifference;                  // what touched in one of the two runs alone, in words; or empty
   std::optional<OtherMethod> other;             // if contact that may come about is found as events
+  std::string closeImpacts;                     // that the other method cannot tell apart, in words; or empty
   std::string fault;                            // what no sensitivity explains, in words; or empty
 };
 

@@ -23,6 +23,9 @@ std::string evidenceText(const AchievedAccuracy& accuracy) {
         "Another method (RK4, all contact resolved every {:.3g} s) differs by {:.1e} at {:.6g} s; half as many steps "
         "change it by {:.1e}\n",
         other.timeStep, other.difference, other.time, other.ownError);
+    if (!accuracy.closeImpacts.empty())
+      text +=
+          fmt::format("  It tells nothing from there on: {}, which makes one impact of both\n", accuracy.closeImpacts);
     if (!other.failure.empty()) text += fmt::format("  It ended before its time: {}\n", other.failure);
   }
   if (!accuracy.touchDifference.empty())

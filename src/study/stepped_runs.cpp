@@ -44,15 +44,31 @@ void SteppedRuns::attempt(const Action& action) {
   }
 }
 
+void SteppedRuns::add(const Event& event) {
+  if (event.kind != EventKind::impact || event.bodyB < 0 || closeImpacts_) return;
+  const auto partnerOf = [](const Event& impact, int body) {
+    return impact.bodyA == body ? impact.bodyB : impact.bodyA;
+  };
+  for (const int body : {event.bodyA, event.bodyB}) {
+    if (fineScene_.bodies[static_cast<std::size_t>(body)].motion == Motion::fixed) continue;
+    const auto [last, isFirst] = lastImpacts_.try_emplace(body, event);
+    if (!isFirst && event.time <= last->second.time + kOtherTimeStep &&
+        partnerOf(event, body) != partnerOf(last->second, body))
+      closeImpacts_ = CloseImpacts{event.time, body, partnerOf(last->second, body), partnerOf(event, body)};
+    last->second = event;
+  }
+}
+
 void SteppedRuns::take(const Frame& frame, double growth) {
-  if (!result_.failure.empty() || result_.disagrees) return;
+  if (!result_.failure.empty() || result_.disagrees || result_.closeImpacts) return;
   attempt([&] {
     const Frame fine = frameOf(*fine_, frame), coarse = frameOf(*coarse_, frame);
     const double difference = motionError(fine.states, frame.states);
     result_.ownError = std::max(result_.ownError, motionError(coarse.states, fine.states));
     if (difference > result_.difference) result_.difference = difference, result_.time = frame.time;
-    result_.disagrees =
-        difference > std::max({kSeenDifference, kBeyondOwnError * result_.ownError, kLawDifference * growth});
+    if (difference <= std::max({kSeenDifference, kBeyondOwnError * result_.ownError, kLawDifference * growth})) return;
+    result_.closeImpacts = closeImpacts_;
+    result_.disagrees = !closeImpacts_;
   });
 }
 
