@@ -186,10 +186,11 @@ void IslandSolver::endPromise(const EventMotion& events) {
 }
 
 void IslandSolver::endPromiseAtDeadPoint(double time) {
-  promiseEnd_ = {time,
-                 "constraints take more than the accuracy out of one step, as near a dead point",
-                 island_.assembly.sceneBodies,
-                 {}};
+  promiseEnd_ = {
+      time,
+      "constraints take more than the accuracy out of one step, as near a dead point or under a far heavier body",
+      island_.assembly.sceneBodies,
+      {}};
   promiseEnd_->warning = textOf(*promiseEnd_, island_.scene);
 }
 

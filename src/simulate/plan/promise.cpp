@@ -22,12 +22,13 @@
 namespace cradle {
 namespace {
 
-constexpr int kFewSphereRows = 60;    // of spheres that touch: the most that can be independent, solved in 1 ms
-constexpr double kBounces = 16;       // times 1 / (1 - e): bounces of a sphere from 1/60 s before its rest, e near 1
-constexpr double kFewBounces = 5e3;   // a quarter of those that kLongEventRateLimit has
-constexpr double kLevelSlope = 1e-9;  // sine: flatter is level
-constexpr int kFaceContacts = 8;      // of two faces, or of a face and a plane: patches have no more points
-constexpr int kManyContacts = 64;     // of a mesh
+constexpr int kFewSphereRows = 60;     // of spheres that touch: the most that can be independent, solved in 1 ms
+constexpr double kBounces = 16;        // times 1 / (1 - e): bounces of a sphere from 1/60 s before its rest, e near 1
+constexpr double kFewBounces = 5e3;    // a quarter of those that kLongEventRateLimit has
+constexpr double kFarMassRatio = 1e6;  // contacts under a body as much heavier lose six digits
+constexpr double kLevelSlope = 1e-9;   // sine: flatter is level
+constexpr int kFaceContacts = 8;       // of two faces, or of a face and a plane: patches have no more points
+constexpr int kManyContacts = 64;      // of a mesh
 
 /// Bounds over all contacts that may come about in an island.
 struct PossibleContacts {
@@ -244,6 +245,17 @@ PromiseCondition slidingCondition(const Scene& scene, const PossibleContacts& co
           contacts.movers};
 }
 
+/// Adds that no body squeezes a far lighter one, if there is one.
+void addMassCondition(const Scene& scene, const PossibleContacts& contacts, std::vector<PromiseCondition>& conditions) {
+  const auto massOf = [&](int body) { return scene.bodies[static_cast<std::size_t>(body)].massProperties.mass; };
+  const auto [light, heavy] = std::minmax_element(contacts.movers.begin(), contacts.movers.end(),
+                                                  [&](int left, int right) { return massOf(left) < massOf(right); });
+  if (light == contacts.movers.end() || massOf(*heavy) <= kFarMassRatio * massOf(*light)) return;
+  conditions.push_back({fmt::format("none of {} squeezes another of less than a millionth of its mass",
+                                    namesOfBodies(contacts.movers, scene)),
+                        contacts.movers});
+}
+
 std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan& island,
                                            const PossibleContacts& contacts) {
   std::vector<PromiseCondition> conditions;
@@ -265,6 +277,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
     conditions.push_back({fmt::format("nothing touches {} within a thousandth of its size of a joint",
                                       namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
+  addMassCondition(scene, contacts, conditions);
   const EventRateLimit& patience = scene.accuracy > kVisualAccuracy ? kVisualEventRateLimit : kEventRateLimit;
   conditions.push_back(
       {fmt::format("{} among {}", patience.limit, namesOfBodies(contacts.movers, scene)), contacts.movers});
@@ -273,8 +286,11 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
 
 /// A sphere that slides with friction between others, or on a plane and under another one, may be wedged in.
 Promise promiseOfFewSpheres(const Scene& scene, const PossibleContacts& contacts) {
-  if (!contacts.mayWedge) return {};
-  return {Promise::Kind::conditional, {slidingCondition(scene, contacts)}, {}, true};
+  std::vector<PromiseCondition> conditions;
+  if (contacts.mayWedge) conditions.push_back(slidingCondition(scene, contacts));
+  addMassCondition(scene, contacts, conditions);
+  if (conditions.empty()) return {};
+  return {Promise::Kind::conditional, std::move(conditions), {}, true};
 }
 
 Promise notPromised(std::string reason) {

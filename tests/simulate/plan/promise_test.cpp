@@ -81,6 +81,17 @@ TEST(Promise, OfFewSpheresWithFrictionBetweenThemIsWhileNoneJams) {
             "promised while no contact of s0, s1 jams, or slides so slowly that its friction has no sure direction");
 }
 
+// Forces of the heavier one, rounded, move the lighter one.
+TEST(Promise, OfFarHeavierBodiesIsWhileTheySqueezeNone) {
+  const auto pairOf = [](double mass) {
+    return bodyOf("a", kSphere, Vec3(0, 1, 0), R"("mass": 1, "material": "smooth")") +
+           bodyOf("b", kSphere, Vec3(0, 2, 0), fmt::format(R"("mass": {}, "material": "smooth")", mass));
+  };
+  EXPECT_EQ(describe(promiseOfOnly(pairOf(9e5), kSmooth)), "promised");
+  EXPECT_EQ(describe(promiseOfOnly(pairOf(1.1e6), kSmooth)),
+            "promised while none of a, b squeezes another of less than a millionth of its mass");
+}
+
 // On level ground a ball soon rolls; on a slope it may slide slowly for long.
 TEST(Promise, OfASphereOnARoughSlopeIsWhileItDoesNotSlideSlowly) {
   const std::string slope = bodyOf("slope", R"("plane": {"normal": [0.1, 1, 0]})", Vec3::Zero(), kStatic);
