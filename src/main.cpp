@@ -137,7 +137,9 @@ void addPictures(CLI::App& app, CommandLine& line) {
                             [&] { renderFrames(line.input, line.output, line.pictures, line.quiet); });
   render->add_option("input", line.input, "scene or trajectory file")->required();
   addOutput(render, line, "folder for frame_000000.png, ...");
-  render->add_option("--frames", line.pictures.frames, "FIRST:END, half-open (default: all)");
+  render->add_option("--frames", line.pictures.frames,
+                     "FIRST:END, half-open, FIRST:, :END or one frame (default: all pictures; the state at the "
+                     "duration is none of them, but may be named)");
   render->add_flag("--overwrite", line.pictures.overwrite, "replace frames that are in the folder already");
   addPictureOptions(render, line);
 
@@ -260,6 +262,17 @@ int answer(const CLI::App& app, const CLI::ParseError& error) {
   return code == 0 ? 0 : static_cast<int>(ErrorKind::usage);
 }
 
+/// The words of the command line, the last one first. "help COMMAND" is "COMMAND --help".
+std::vector<std::string> wordsOf(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words[0] == "help") {
+    words.erase(words.begin());
+    words.push_back("--help");
+  }
+  std::reverse(words.begin(), words.end());
+  return words;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Cradle: rigid-body physics from a scene file, and pictures of it.", "cradle");
   CommandLine line;
@@ -267,14 +280,20 @@ int run(int argc, char** argv) {
   app.add_flag("-q,--quiet", line.quiet, "no progress on stderr");
   app.require_subcommand(1);
   app.fallthrough();
-  app.footer("Example:\n  cradle video scenes/newtons_cradle.json -o cradle.mp4\n'cradle COMMAND --help' says more.");
+  app.footer(
+      "Example:\n  cradle video scenes/newtons_cradle.json -o cradle.mp4\n'cradle COMMAND --help', or 'cradle help "
+      "COMMAND', says more.");
   addSimulate(app, line);
   addPictures(app, line);
   addStudy(app, line);
   addQuestions(app, line);
   checkValues(app);
+  if (argc <= 1) {
+    showText(stderr, app.help());
+    return static_cast<int>(ErrorKind::usage);
+  }
   try {
-    app.parse(argc, argv);
+    app.parse(wordsOf(argc, argv));
   } catch (const CLI::RequiredError& error) {
     if (app.get_subcommands().empty()) refuseUnknownWord(app);
     return answer(app, error);

@@ -55,23 +55,31 @@ Size parseSize(const std::optional<std::string>& text, const Scene& scene) {
     throw Error(ErrorKind::usage, "--size", fmt::format("found \"{}\"; allowed is WIDTHxHEIGHT, as 1280x720", *text));
   for (const long edge : {size->first, size->second})
     if (edge < 1 || edge > kLargestSize)
-      throw Error(ErrorKind::scene, "--size", fmt::format("found {}; allowed are 1 to {} pixels", edge, kLargestSize));
+      throw Error(ErrorKind::usage, "--size", fmt::format("found {}; allowed are 1 to {} pixels", edge, kLargestSize));
   return {static_cast<int>(size->first), static_cast<int>(size->second)};
 }
 
-std::optional<FrameRange> parseRange(const std::optional<std::string>& text) {
-  const auto range = text ? parsePair(*text, ':') : std::nullopt;
-  return range ? std::optional(FrameRange{range->first, range->second}) : std::nullopt;
+/// FIRST:END, of which either may be left out, or one frame. Without END, to `count`.
+std::optional<FrameRange> parseRange(const std::optional<std::string>& text, long count) {
+  if (!text || text->empty() || *text == ":") return std::nullopt;
+  std::string whole = *text;
+  if (whole.starts_with(':')) whole = "0" + whole;
+  if (whole.ends_with(':')) whole += std::to_string(count);
+  if (const auto range = parsePair(whole, ':')) return FrameRange{range->first, range->second};
+  const auto one = parsePair(whole + ":0", ':');
+  if (!one || one->first == std::numeric_limits<long>::max()) return std::nullopt;
+  return FrameRange{one->first, one->first + 1};
 }
 
 /// The frames to draw; the last frame of the trajectory may be named, though a film leaves it out.
 FrameRange parseFrames(const std::optional<std::string>& text, const TrajectorySource& source) {
   if (!text) return {0, source.pictureCount()};
-  const auto range = parseRange(text);
+  const auto range = parseRange(text, source.pictureCount());
   const long count = source.frameCount();
   if (!range || range->first < 0 || range->end <= range->first || range->end > count)
     throw Error(ErrorKind::usage, "--frames",
-                fmt::format("found \"{}\"; allowed is FIRST:END with 0 <= FIRST < END <= {}", *text, count));
+                fmt::format("found \"{}\"; allowed is FIRST:END with 0 <= FIRST < END <= {}, FIRST:, :END or one frame",
+                            *text, count));
   return *range;
 }
 
@@ -203,7 +211,7 @@ void drawFrames(FilmDrawer& drawer, const FrameRange& range, Progress& progress,
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet) {
   std::optional<ResultFolder> made;  // outlives the lock
   std::optional<FolderLock> lock;
-  takeFolder(folder, parseRange(options.frames), options, lock);
+  takeFolder(folder, parseRange(options.frames, kMaxFrames), options, lock);
   if (options.overlay) parseOverlays(*options.overlay);
   TrajectorySource source(input, quiet, options.assetRoot);
   const PictureOrder order(options, source.scene());

@@ -249,11 +249,20 @@ class Study {
   std::optional<ErrorKind> fault_;
 };
 
+/// Methods with spaces between them are taken for scenes.
+void requireNoMethods(const std::vector<std::string>& paths) {
+  const std::vector<StudyMethod> methods = studyMethods();
+  for (const std::string& path : paths)
+    if (!fs::exists(path) && std::any_of(methods.begin(), methods.end(), [&](const auto& m) { return m.name == path; }))
+      throw Error(ErrorKind::usage, path, "is a method; methods have commas between them, as --methods rk4,dop853");
+}
+
 }  // namespace
 
 void studyScenes(const std::vector<std::string>& paths, const std::string& assetRoot, const std::string& folder,
                  const std::vector<std::string>& methodNames, bool quiet) {
   const std::vector<StudyMethod> methods = studyMethodsNamed(methodNames);
+  requireNoMethods(paths);
   requireOwnFolder(folder, "result of a study", isResultName);
   std::deque<NamedScene> scenes;
   loadScenes(paths, assetRoot, hashOfProgram(methods), scenes);

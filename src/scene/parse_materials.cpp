@@ -26,8 +26,13 @@ Material parseMaterial(const Field& field, const std::string& name, FaultList& f
   ObjectReader reader(field, faults);
   material.density = reader.number("density", kDensities, "kg/m^3", material.density);
   material.restitution = reader.number("restitution", kFraction, "", material.restitution);
+  const bool hasStatic = reader.find("staticFriction").has_value();
+  const bool hasDynamic = reader.find("dynamicFriction").has_value();
   material.staticFriction = reader.number("staticFriction", kFrictions, "", material.staticFriction);
   material.dynamicFriction = reader.number("dynamicFriction", kFrictions, "", material.dynamicFriction);
+  // One alone below, or above, what the other is by default moves that with it.
+  if (!hasDynamic) material.dynamicFriction = std::min(material.dynamicFriction, material.staticFriction);
+  if (!hasStatic) material.staticFriction = std::max(material.staticFriction, material.dynamicFriction);
   material.baseColor = reader.color("baseColor");
   material.metallic = reader.number("metallic", kFraction, "", material.metallic);
   material.roughness = reader.number("roughness", kFraction, "", material.roughness);

@@ -185,18 +185,37 @@ std::vector<Field> readItems(const Field& field, FaultList& faults) {
   return items;
 }
 
+namespace {
+
+/// Of a number in place of a vector: the vector along y, which is up.
+std::string asVector(const JsonValue& value, std::size_t count) {
+  const auto* number = std::get_if<double>(&value.content);
+  return number != nullptr && count == 3 ? fmt::format(", as [0, {}, 0]", *number) : "";
+}
+
+/// Of a name in place of an object: the object with that key.
+std::string asObject(const JsonValue& value) {
+  const auto* name = std::get_if<std::string>(&value.content);
+  return name != nullptr ? fmt::format(", as {{{}: {{ }}}}", inQuotes(*name)) : "";
+}
+
+}  // namespace
+
 std::vector<Field> readItems(const Field& field, std::size_t count, FaultList& faults) {
   const auto* array = std::get_if<JsonValue::Array>(&field.value->content);
   if (array != nullptr && array->size() == count) return readItems(field, faults);
   addFault(faults, field,
-           fmt::format("{} is {}; allowed is an array of {} elements", keyOf(field), described(*field.value), count));
+           fmt::format("{} is {}; allowed is an array of {} elements{}", keyOf(field), described(*field.value), count,
+                       asVector(*field.value, count)));
   return {};
 }
 
 ObjectReader::ObjectReader(const Field& field, FaultList& faults)
     : field_(field), object_(std::get_if<JsonValue::Object>(&field.value->content)), faults_(faults) {
   if (object_ != nullptr) return;
-  addFault(faults, field, fmt::format("{} is {}; allowed is an object", keyOf(field), described(*field.value)));
+  addFault(
+      faults, field,
+      fmt::format("{} is {}; allowed is an object{}", keyOf(field), described(*field.value), asObject(*field.value)));
 }
 
 std::optional<Field> ObjectReader::find(const char* key) {

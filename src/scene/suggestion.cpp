@@ -1,9 +1,11 @@
-// Optimal string alignment (E. Ukkonen, "Algorithms for approximate string matching", 1985, with swaps).
+// Words of other programs, and optimal string alignment (E. Ukkonen, "Algorithms for approximate string matching",
+// 1985, with swaps).
 
 #include "scene/suggestion.h"
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 #include <utility>
 
 #include "scene/fault_list.h"
@@ -12,6 +14,33 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kLongestName = 64;  // longer names are not worth the time
+
+struct Synonym {
+  std::string_view word, ours;
+};
+constexpr Synonym kSynonyms[] = {
+    {"pos", "position"},
+    {"location", "position"},
+    {"translation", "position"},
+    {"rot", "orientation"},
+    {"rotation", "orientation"},
+    {"quaternion", "orientation"},
+    {"vel", "linearVelocity"},
+    {"omega", "angularVelocity"},
+    {"spin", "angularVelocity"},
+    {"fps", "framesPerSecond"},
+    {"frameRate", "framesPerSecond"},
+    {"friction", "staticFriction"},
+    {"mu", "staticFriction"},
+    {"bounciness", "restitution"},
+    {"elasticity", "restitution"},
+    {"color", "baseColor"},
+    {"colour", "baseColor"},
+    {"inertia", "inertiaTensor"},
+    {"ball", "sphere"},
+    {"cube", "box"},
+    {"static", "motion"},
+};
 
 std::string lowered(std::string text) {
   for (char& character : text) character = static_cast<char>(std::tolower(static_cast<unsigned char>(character)));
@@ -47,6 +76,10 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 
 const std::string* mostLike(const std::string& name, const std::vector<std::string>& candidates) {
   if (name.empty() || name.size() > kLongestName) return nullptr;
+  for (const Synonym& synonym : kSynonyms)
+    if (lowered(std::string(synonym.word)) == lowered(name))
+      if (const auto found = std::find(candidates.begin(), candidates.end(), synonym.ours); found != candidates.end())
+        return &*found;
   const std::string* best = nullptr;
   std::size_t bestDistance = allowedSlips(name) + 1;
   for (const std::string& candidate : candidates) {

@@ -10,7 +10,7 @@ namespace cradle {
 /// and lower case count as equal. O(length of a x length of b).
 std::size_t editDistance(const std::string& a, const std::string& b);
 
-/// The candidate that is most like `name`; null if none is like it.
+/// The candidate that other programs call `name`, or that is most like it; null if none is.
 const std::string* mostLike(const std::string& name, const std::vector<std::string>& candidates);
 
 /// "; did you mean "gravity"?" for the candidate that is most like `name`, or nothing if none is like it.

@@ -506,10 +506,27 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--frames", "0:1", "--size", "50x40").returncode, 0)
         self.assertEqual(png_size(self.path("f/frame_000000.png")), (50, 40))
 
+    def test_ranges_of_frames_may_be_open_or_one_frame(self):
+        for frames, names in (("1", [1]), ("2:", [2, 3]), (":2", [0, 1]), ("4", [4])):  # 5 frames, 4 pictures
+            folder = self.path("frames" + frames.replace(":", "_"))
+            path = self.write("short.json", scene(duration=4 / 60))
+            self.assertEqual(cradle("render", path, "-o", folder, "--frames", frames, "--size", "50x40").returncode, 0)
+            self.assertEqual(sorted(os.listdir(folder)), [f"frame_{name:06}.png" for name in names])
+
+    def test_help_is_a_command_and_the_answer_to_none(self):
+        asked = cradle("help", "video")
+        self.assertEqual((asked.returncode, asked.stdout), (0, cradle("video", "--help").stdout))
+        none = cradle()
+        self.assertEqual((none.returncode, none.stdout), (2, ""))
+        self.assertIn("cradle video scenes/newtons_cradle.json", none.stderr)
+
+    def test_methods_with_spaces_between_them_are_told_from_scenes(self):
+        self.refuses(2, ["dop853", "commas"], "study", self.scene, "-o", self.path("s"), "--methods", "rk4", "dop853")
+
     def test_bad_ranges_and_sizes_are_refused(self):
-        for frames in ("3", "5:4", "0:99", "-1:3", "a:b"):
+        for frames in ("5:4", ":", ":0", "99", "99:", "0:99", "-1:3", "a:b"):
             self.refuses(2, ["--frames", frames], "render", self.scene, "-o", self.path("f"), "--frames=" + frames)
-        self.refuses(3, ["--size"], "render", self.scene, "-o", self.path("f"), "--size", "1000000000x2")
+        self.refuses(2, ["--size"], "render", self.scene, "-o", self.path("f"), "--size", "1000000000x2")
         self.refuses(2, ["--size"], "render", self.scene, "-o", self.path("f"), "--size", "64")
 
     def test_a_folder_with_other_files_is_refused(self):
@@ -601,7 +618,7 @@ class Pictures(InTemporaryFolder):
     def test_what_is_wrong_with_pictures_is_told_before_a_long_simulation(self):
         path = self.write("s.json", scene(duration=1e6))  # minutes
         for exit_code, words, arguments in ((2, ["--overlay", "no body", '"ball"'], ["--overlay", "plot=height:bal"]),
-                                            (3, ["--size"], ["--size", "0x9"]),
+                                            (2, ["--size"], ["--size", "0x9"]),
                                             (2, ["--frames", "60000001"], ["--frames", "5:60000009"])):
             command = ["render", path, "-o", self.path("f"), *arguments]
             self.assertLess(self.seconds_until_refused(exit_code, words, command), 5)

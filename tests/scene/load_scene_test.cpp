@@ -196,6 +196,19 @@ TEST(SceneDefaults, AreThoseOfTheTable) {
   EXPECT_EQ(scene.look, Look::light);
 }
 
+// Static friction is not below dynamic: one that is named alone takes the other with it, if the default would not do.
+TEST(SceneDefaults, OfOneFrictionFollowTheOther) {
+  const auto frictionsOf = [](const std::string& named) {
+    const Scene scene = parse(sceneWith(R"("materials": {"m": {)" + named + R"(}}, "bodies": [])")).scene;
+    const Material& material = scene.materials.back();
+    return std::pair(material.staticFriction, material.dynamicFriction);
+  };
+  EXPECT_EQ(frictionsOf(R"("staticFriction": 0.3)"), std::pair(0.3, 0.3));
+  EXPECT_EQ(frictionsOf(R"("staticFriction": 0.8)"), std::pair(0.8, 0.5));
+  EXPECT_EQ(frictionsOf(R"("dynamicFriction": 0.3)"), std::pair(0.5, 0.3));
+  EXPECT_EQ(frictionsOf(R"("dynamicFriction": 0.8)"), std::pair(0.8, 0.8));
+}
+
 TEST(SceneDefaults, OfABodyAreThoseOfTheTable) {
   const Scene scene = parse(sceneWith(R"("bodies": [{"name": "a", "shape": {"sphere": {}}}])")).scene;
   const Body& body = scene.bodies.at(0);
