@@ -211,12 +211,19 @@ void satisfyConstraints(const Scene& scene, Assembly& assembly) {
   const VectorX before = assembly.state;
   solver.factorize(before);
   const ConstraintRate violation = solver.largestRate(before);
-  // Spins that a scene gives are kept where velocities of the centres of mass can follow them.
-  std::vector<RigidBody> nonRotating = mechanism.bodies;
-  for (RigidBody& body : nonRotating) body.inverseInertia.setZero();
-  ConstraintSolver linear(mechanism.constraints, nonRotating);
-  linear.factorize(before);
-  linear.constrainVelocities(assembly.state);
+  // Spins that a scene gives are kept where velocities of the centres of mass can follow them, and these where no spin
+  // is given. What is left changes the kinetic energy least.
+  std::vector<RigidBody> following = mechanism.bodies;
+  for (std::size_t i = 0; i < following.size(); ++i) {
+    const auto index = static_cast<Eigen::Index>(i);
+    if (angularVelocity(before, index).isZero(0) && !linearVelocity(before, index).isZero(0))
+      following[i].inverseMass = 0;
+    else
+      following[i].inverseInertia.setZero();
+  }
+  ConstraintSolver first(mechanism.constraints, following);
+  first.factorize(before);
+  first.constrainVelocities(assembly.state);
   solver.constrainVelocities(assembly.state);
   if (violation.rate > kVelocityRounding)
     assembly.warnings.push_back(fmt::format(

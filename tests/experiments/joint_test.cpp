@@ -210,5 +210,34 @@ TEST(Gyroscope, OnALevelAxlePrecessesAtItsClosedForm) {
   }
 }
 
+/// A rod of 1 m that hangs from a hinge at its upper end, and starts with these velocities (m/s, rad/s).
+BodyState startOfRod(const Vec3& velocity, const Vec3& spin) {
+  return simulate(sceneWith(fmt::format(R"("duration": 0.01, "bodies": [{{"name": "rod", "collision": "none",
+      "shape": {{"box": {{"size": [0.02, 1, 0.02]}}}}, "mass": 1, "position": [0, -0.5, 0],
+      "linearVelocity": {}, "angularVelocity": {}}}],
+      "hinges": [{{"bodyA": "rod", "anchorA": [0, 0.5, 0], "anchorB": [0, 0, 0], "axis": [0, 0, 1]}}])",
+                                        vectorText(velocity), vectorText(spin))))
+      .frames.front()
+      .states.front();
+}
+
+// About the hinge v = w / 2 along x. A spin that is given is kept, and a velocity without one; what the hinge allows of
+// neither, along it and along the rod, goes.
+TEST(StartVelocities, FollowTheOneThatIsGiven) {
+  const struct {
+    Vec3 velocity, spin;
+    double speed;  // m/s, along x
+  } cases[] = {{Vec3(1, 0, 0), Vec3::Zero(), 1},
+               {Vec3::Zero(), Vec3(0, 0, 2), 1},
+               {Vec3(1, 0.3, 0.2), Vec3::Zero(), 1},
+               {Vec3(1, 0, 0), Vec3(0, 0, 1), 0.5},
+               {Vec3(0.25, 0, 0), Vec3(0, 0, 0.5), 0.25}};
+  for (const auto& given : cases) {
+    const BodyState start = startOfRod(given.velocity, given.spin);
+    EXPECT_LT((start.linearVelocity - given.speed * Vec3::UnitX()).norm(), 1e-15) << given.velocity.transpose();
+    EXPECT_LT((start.angularVelocity - 2 * given.speed * Vec3::UnitZ()).norm(), 2e-15) << given.velocity.transpose();
+  }
+}
+
 }  // namespace
 }  // namespace cradle
