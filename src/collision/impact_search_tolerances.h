@@ -9,6 +9,8 @@ struct ImpactSearchTolerances {
       : samePlace(1e-3 * size),
         pinned(1e-8 * size),
         pinnedBand(5e-10 * size),
+        leastRise(5e-17 * size),
+        rounding(1e-15 * size),
         graze(1e-4 * size),
         flushArea(1e-3 * size * size) {}
 
@@ -21,6 +23,11 @@ struct ImpactSearchTolerances {
   // m: how far round surfaces sink in where a joint holds them before that is an impact. Surfaces of that radius then
   // touch at an arm of sqrt(2 x 5e-10) = 3e-5 of the size from the joint, long enough for an impulse to turn the body.
   double pinnedBand;
+  // m: what leaves with a speed that takes it less high does not leave. A hundredth of the lowest rebound that is
+  // followed (EventTolerances::kOpeningRatio).
+  double leastRise;
+  // m: of a gap. The coordinates of bodies far from the origin are rounded more coarsely.
+  double rounding;
   // m: edges of meshes may graze each other so deep unseen. A tenth or ten times as much changes no test of a search.
   double graze;
   // m^2: held corners whose arms span a larger area keep a body from tilting. A tenth or ten times as much changes no

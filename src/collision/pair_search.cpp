@@ -23,6 +23,10 @@ constexpr double kFinestBesidePin = 1.0 / 256;
 // Of a step: a feature that leaves is searched from then on at the latest, for another of its points may come down. A
 // tenth or ten times as much changes no test of a search.
 constexpr double kFirstGap = 1.0 / 1024;
+// Of a coordinate: so well a gap is known there.
+constexpr double kCoordinateRounding = 1e-15;
+// Times its rounding: a gap that leaves by no more is one again, or sinks in, when it has closed by this.
+constexpr double kRoundingsOfBounce = 8;
 // rad, in a step: of two bodies against each other, by which a manifold of convex ones may change its features.
 constexpr double kTurned = 0.1;
 
@@ -119,7 +123,12 @@ void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::op
   const double start = separationAt(0);
   const double size = std::max(a_.boundingRadius, b.boundingRadius), end = best ? best->fraction : 1;
   const bool touches = start <= std::max(touching.tolerance, ImpactSearchTolerances(size).pinned);
-  const double threshold = touches ? std::min(0.0, start) - deadBand(touching) : 0;
+  const double band = deadBand(touching);
+  double threshold = 0;
+  if (touches && isBounce(leavingSpeed(touching.tolerance) * step_.timeStep))
+    threshold = std::min(-band, start - kRoundingsOfBounce * gapRounding());
+  else if (touches)
+    threshold = std::min(0.0, start) - band;
   GapBounds bounds = bounds_;
   bounds.acceleration = GapBounds().acceleration;
   bounds.finest = kFinestRotation;
@@ -287,22 +296,30 @@ bool PairSearch::staysOnePoint() const {
 }
 
 /// Searches for the impact of a feature that touches when the step begins. If it leaves with a speed v, the largest
-/// acceleration a cannot bring it back before the time 2 v / a; the search begins at v / a, where it is farthest. If it
-/// does not leave, or by no more than the dead band, it collides when it has closed by the dead band.
+/// acceleration a cannot bring it back before the time 2 v / a; the search begins at v / a, where it is farthest, or
+/// later, where it is so far that rounding does not hide it. It then collides as deep as it was: with each bounce it
+/// would sink in otherwise. If it does not leave, it collides when it has closed by the dead band.
 void PairSearch::searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
-  const double band = deadBand(touching);
+  const double band = deadBand(touching), acceleration = closingAcceleration();
   bounds_.graze = std::max(bounds_.graze, touching.tolerance);  // faces that stay flush would be searched without end
-  if (!(speed > band)) return searchFrom(0, start, lowest - band, best);
+  const bool isFollowed = band > touching.deadBand && isBounce(speed);
+  if (!(speed > band || isFollowed)) return searchFrom(0, start, lowest - band, best);
   const bool hasOnePoint = std::isfinite(bounds_.acceleration) && staysOnePoint();
-  const double acceleration = closingAcceleration();
   if (hasOnePoint && speed >= 0.5 * acceleration) return;  // 2 v / a is beyond the step
-  const double from = std::min(speed / acceleration, hasOnePoint ? 1 : kFirstGap);
-  const double away = gap(from);
+  const double rounding = gapRounding();
+  double from = std::min(speed / acceleration, hasOnePoint ? 1 : kFirstGap), away = gap(from);
+  while (isFollowed && from < kFirstGap && std::abs(away - lowest) <= rounding) away = gap(from *= 2);
   if (away > lowest)
     searchFrom(from, away, lowest, best);
   else
-    searchFrom(0, start, lowest - band, best);  // the gap opens by no more than rounding
+    searchFrom(0, start, lowest - (isFollowed ? std::min(band, kRoundingsOfBounce * rounding) : band), best);
+}
+
+/// Whether a feature that leaves with a speed (m, with the step as the unit of time) rises so high that it bounces.
+bool PairSearch::isBounce(double speed) const {
+  const double leastRise = ImpactSearchTolerances(a_.boundingRadius).leastRise;
+  return speed > 0 && speed * speed > 2 * closingAcceleration() * leastRise;
 }
 
 /// Bound on the acceleration with which the gap comes back (m, with the step as the unit of time). The distance of a
@@ -322,6 +339,13 @@ double PairSearch::deadBand(const TouchingFeatures& touching) const {
   double size = a_.boundingRadius;
   if (!pair_.againstPlane) size = std::min(size, geometry_.colliders[pair_.b].boundingRadius);
   return std::max(touching.deadBand, ImpactSearchTolerances(size).pinnedBand);
+}
+
+/// How far (m) a gap may be from what it seems to be.
+double PairSearch::gapRounding() const {
+  const double farthest =
+      std::max(startA_.translation.cwiseAbs().maxCoeff(), startB_.translation.cwiseAbs().maxCoeff());
+  return std::max(ImpactSearchTolerances(a_.boundingRadius).rounding, kCoordinateRounding * farthest);
 }
 
 /// Puts into `best` the instant after `from` at which the gap falls to `threshold` (m), if there is one before it.

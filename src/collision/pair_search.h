@@ -45,6 +45,8 @@ class PairSearch {
   bool staysOnePoint() const;
   double closingAcceleration() const;
   double deadBand(const TouchingFeatures& touching) const;
+  bool isBounce(double speed) const;
+  double gapRounding() const;
   double leavingSpeed(double tolerance);
   Vec3 lowestPoint(const Vec3& planeNormal) const;
   double gap(double fraction, double enough = INFINITY);

@@ -145,14 +145,16 @@ bool isPinnedTo(const Collider& collider, int other) {
                      [&](const PinnedPlace& pin) { return pin.other == other; });
 }
 
-/// Whether a joint keeps the surface of a collider where it is at a contact: the centre of its sphere there, or the
-/// point itself where the surface is no sphere. `inwards` (unit) points into the collider.
+/// Whether a joint keeps the surface of a collider where it is at a contact: the point itself, or the centre of its
+/// sphere there. `inwards` (unit) points into the collider.
 bool isPinnedAt(const Collider& collider, int other, const ContactPoint& contact, double radius,
                 const RigidTransform& frame, const Vec3& inwards) {
   if (!isPinnedTo(collider, other)) return false;
-  const double depth = std::isfinite(radius) ? radius : 0;
-  const Vec3 center = contact.point + (depth + contact.separation / 2) * inwards;
-  return isPinned(collider, other, frame.inverse() * center, ImpactSearchTolerances(collider.boundingRadius).pinned);
+  const double tolerance = ImpactSearchTolerances(collider.boundingRadius).pinned;
+  const Vec3 surface = contact.point + 0.5 * contact.separation * inwards;
+  if (isPinned(collider, other, frame.inverse() * surface, tolerance)) return true;
+  return std::isfinite(radius) &&
+         isPinned(collider, other, frame.inverse() * Vec3(surface + radius * inwards), tolerance);
 }
 
 bool isPinnedContact(const ContactGeometry& geometry, const ColliderPair& pair, const ContactPoint& contact,

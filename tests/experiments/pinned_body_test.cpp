@@ -429,6 +429,45 @@ TEST(BoxPinnedByItsEdge, MeetsTheBlockWithAllThatComesDown) {
       }
 }
 
+/// The lowest point (m, its frame) of a box, a capsule or a cylinder, each 1 m long, where `down` (unit) is down.
+Vec3 lowestPoint(std::size_t shape, const Vec3& down) {
+  const double end = std::copysign(0.5, down.y());
+  if (shape == 0) return {std::copysign(0.3, down.x()), end, std::copysign(0.25, down.z())};
+  if (shape == 1) return Vec3(0, end, 0) + 0.3 * down;
+  return Vec3(0, end, 0) + 0.3 * Vec3(down.x(), 0, down.z()).normalized();
+}
+
+// A body on a ball joint at, or a hair above, the floor, whose other end comes down and bounces until it rests. Each of
+// the bounces ends as deep as it began: with the depth of one that counts as an impact, 5e-10 of the size, each of them
+// would sink in by so much, and gain the height for the next ones: thousands, and a place that is none of the scene's.
+TEST(PinnedBody, BouncesToRestWithoutSinkingIn) {
+  const std::array<const char*, 3> shapes = {R"({"box": {"size": [0.6, 1, 0.5]}})",
+                                             R"({"capsule": {"radius": 0.3, "length": 1}})",
+                                             R"({"cylinder": {"radius": 0.3, "length": 1}})"};
+  int kept = 0;
+  for (const std::string& ground : {kPlane, kBox})
+    for (std::size_t shape = 0; shape < shapes.size(); ++shape)
+      for (int i = 0; i < 12; ++i)
+        for (const double accuracy : {1e-6, 1e-8, 1e-10}) {
+          const double gap = std::array{0.0, 1e-6, 1e-3}[static_cast<std::size_t>(i) % 3],
+                       restitution = i % 2 ? 0.8 : 0.6;
+          SCOPED_TRACE(testing::Message() << ground << shapes[shape] << i << " " << accuracy);
+          const Quat turn(Eigen::AngleAxisd(0.3 + 0.2 * i, Vec3(std::cos(i), 0, std::sin(i))));
+          const Vec3 anchor = lowestPoint(shape, turn.conjugate() * Vec3(0, -1, 0)), place(0.2, gap, -0.1);
+          const Scene scene = sceneWith(fmt::format(
+              R"("duration": 2.5, "accuracy": {}, {}, "bodies": [{}, {{"name": "b", "mass": 1, "shape": {},
+              "material": "m", "position": {}, "orientation": {}}}],
+              "ballJoints": [{{"bodyA": "b", "anchorA": {}, "anchorB": {}}}])",
+              accuracy, materialsText(restitution, 0.3), ground, shapes[shape], vectorText(place - turn * anchor),
+              orientationText(turn), vectorText(anchor), vectorText(place)));
+          const RandomSceneFigures figures = runRandomScene(scene);
+          if (!figures.keepsAccuracy) continue;  // a cylinder that lands flat rolls on its rim by the pin
+          ++kept;
+          EXPECT_LT(figures.penetration, 1e-9 + 0.01 * accuracy);
+        }
+  EXPECT_GE(kept, 200) << "of 216";
+}
+
 // A heavy capsule jams a light cylinder between the floor and its hinge, a thousandth of its size beside the contact:
 // forces of 1e6 N on 0.02 kg, whose rounding alone asks for steps of 3e-7 s. They are not taken for long: 7 million
 // evaluations would be.
