@@ -42,6 +42,9 @@ class Corrections {
   /// Takes all that another one has recorded, and empties it.
   void take(Corrections& other);
 
+  /// The first that is not taken yet; null if there is none.
+  const Correction* first() const { return first_.empty() ? nullptr : &first_.front(); }
+
   /// Those that were the first of their kind, since the last call.
   std::vector<Correction> takeFirst();
 

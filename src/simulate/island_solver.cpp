@@ -123,6 +123,8 @@ void IslandSolver::advance(double time) {
   if (events_) {
     advance(time, *events_);
     if (!promiseEnd_ && events_->offConstraintsFrom()) endPromiseAtDeadPoint(*events_->offConstraintsFrom());
+    if (const Correction* correction = island_.log.corrections().first(); correction && !promiseEnd_)
+      endPromise(*correction);
   } else {
     advance(time, *steps_);
   }
@@ -191,6 +193,12 @@ void IslandSolver::endPromiseAtDeadPoint(double time) {
       "constraints take more than the accuracy out of one step, as near a dead point or under a far heavier body",
       island_.assembly.sceneBodies,
       {}};
+  promiseEnd_->warning = textOf(*promiseEnd_, island_.scene);
+}
+
+void IslandSolver::endPromise(const Correction& correction) {
+  promiseEnd_ = {
+      correction.time, "forces or impulses of contacts were not found to the tolerance", correction.bodies, {}};
   promiseEnd_->warning = textOf(*promiseEnd_, island_.scene);
 }
 

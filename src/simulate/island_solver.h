@@ -99,6 +99,7 @@ class IslandSolver {
   double contactTimeStep() const;
   void endPromise(const EventMotion& events);
   void endPromiseAtDeadPoint(double time);
+  void endPromise(const Correction& correction);
   template <class Motion>
   static void advance(double time, Motion& motion);
   bool mayNotGoOn() const;
