@@ -175,6 +175,15 @@ ConvexHull withoutStraightCorners(const std::vector<Vec3>& points, std::vector<s
 
 }  // namespace
 
+TriangleMesh trianglesOf(const ConvexHull& hull) {
+  TriangleMesh mesh{hull.vertices, {}};
+  for (const std::vector<std::size_t>& face : hull.faces)
+    for (std::size_t i = 2; i < face.size(); ++i)
+      mesh.triangles.push_back({static_cast<std::uint32_t>(face[0]), static_cast<std::uint32_t>(face[i - 1]),
+                                static_cast<std::uint32_t>(face[i])});
+  return mesh;
+}
+
 ConvexHull convexHullOf(const std::vector<Vec3>& points) {
   const double limit = kFlatRatio * sizeOf(points);
   const auto fail = [] {

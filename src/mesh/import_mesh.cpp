@@ -141,8 +141,7 @@ void importFile(const std::string& path, ImportedFile& file) {
   file.importer.SetIOHandler(files);
   const std::string& bytes = files->read(path);
   const bool looksLike3ds = bytes.starts_with("MM") && !file.importer.IsExtensionSupported(lowerExtension(path));
-  const bool isNamed3ds = lowerExtension(path) == ".3ds" || lowerExtension(path) == ".prj";
-  if (isNamed3ds || looksLike3ds) file.summary = check3ds(bytes, path);
+  if (isNamed3ds(path) || looksLike3ds) file.summary = check3ds(bytes, path);
   if (lowerExtension(path) == ".obj") requireFewParts(bytes, path);
   file.scene = file.importer.ReadFile(path, aiProcess_Triangulate);
   if (!files->outside().empty())
@@ -309,6 +308,11 @@ MeshPiece readPiece(const ImportedFile& file, const Placement& placement) {
 }
 
 }  // namespace
+
+bool isNamed3ds(const std::string& path) {
+  const std::string extension = lowerExtension(path);
+  return extension == ".3ds" || extension == ".prj";
+}
 
 std::vector<ImportedObject> parseObjects(const std::string& path) {
   ImportedFile file;

@@ -13,6 +13,9 @@ struct ImportedObject {
   std::vector<MeshPiece> pieces;
 };
 
+/// Whether a path has the name of a 3ds file, whose objects come out Y up.
+bool isNamed3ds(const std::string& path);
+
 /// The objects of a mesh file in its own units, in the order in which they first appear; see loadObjects. A child
 /// process parses the file, with limits of memory and time: what comes back are triangles. Files that it names in turn
 /// are read only below its folder. Throws Error(mesh).

@@ -44,6 +44,27 @@ void scaleBy(double scale, const std::string& path, std::vector<ImportedObject>&
       }
 }
 
+/// Unit vectors of the world as a file with that axis up has them: rows x, y, z, of which y is the axis.
+Mat3 worldFromFile(UpAxis up) {
+  Mat3 turn = Mat3::Identity();
+  if (up == UpAxis::x) turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  if (up == UpAxis::z) turn << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  return turn;
+}
+
+/// Turns objects that came out with the axis up that their format has.
+void turnUp(UpAxis up, const std::string& path, std::vector<ImportedObject>& objects) {
+  const UpAxis ofFormat = isNamed3ds(path) ? UpAxis::z : UpAxis::y;
+  if (up == UpAxis::ofFormat || up == ofFormat) return;
+  const Mat3 turn = worldFromFile(up) * worldFromFile(ofFormat).transpose();
+  const Eigen::Matrix3f turnOfNormals = turn.cast<float>();
+  for (ImportedObject& object : objects)
+    for (MeshPiece& piece : object.pieces) {
+      for (Vec3& corner : piece.corners) corner = turn * corner;
+      for (Vec3f& normal : piece.normals) normal = turnOfNormals * normal;
+    }
+}
+
 /// The objects of a file as they are wound there.
 std::vector<LoadedModel> assembleObjects(const std::string& path, std::vector<ImportedObject> imported, double scale,
                                          ModelParts parts) {
@@ -72,6 +93,7 @@ LoadedModel joinOutwards(const std::string& name, std::vector<LoadedModel> objec
 
 /// The object that `reference` names, or all as one.
 LoadedModel chosenModel(const MeshReference& reference, std::vector<ImportedObject> imported) {
+  turnUp(reference.upAxis, reference.path, imported);
   std::vector<LoadedModel> objects =
       assembleObjects(reference.path, std::move(imported), reference.scale, ModelParts::solidAndDrawn);
   if (reference.object.empty() && objects.size() > 1)

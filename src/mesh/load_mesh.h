@@ -7,11 +7,15 @@
 
 namespace cradle {
 
+/// The axis of a mesh file that points up; it becomes Y. Left to its format: z of 3ds, y of others.
+enum class UpAxis { ofFormat, x, y, z };
+
 /// A mesh file as a scene names it.
 struct MeshReference {
   std::string path;    // as the program opens it
   std::string object;  // name of one object of the file; empty: all objects are one body
   double scale = 1;    // file's units to metres, > 0
+  UpAxis upAxis = UpAxis::ofFormat;
 };
 
 /// A model with what had to be mended on the way.
@@ -29,8 +33,8 @@ enum class ModelParts { solidAlone, solidAndDrawn };
 std::vector<LoadedModel> loadObjects(const std::string& path, double scale,
                                      ModelParts parts = ModelParts::solidAndDrawn);
 
-/// The object that `reference` names, or all objects of the file joined into one model. Throws as loadObjects does, and
-/// Error(mesh) naming the objects there are if the named one does not exist.
+/// The object that `reference` names, its axis up, or all objects of the file joined into one model. Throws as
+/// loadObjects does, and Error(mesh) naming the objects there are if the named one does not exist.
 LoadedModel loadModel(const MeshReference& reference);
 
 }  // namespace cradle

@@ -27,12 +27,12 @@ class CompensatedSum {
   T sum_, error_;
 };
 
-// Integrals over the solid of 1, x and x x^T, x measured from `reference`.
+// Integrals of 1, x and x x^T over a solid, or over a surface, x measured from `reference`.
 struct Moments {
   Vec3 reference = Vec3::Zero();
-  double volume = 0;           // m^3
-  Vec3 first = Vec3::Zero();   // m^4
-  Mat3 second = Mat3::Zero();  // m^5
+  double zeroth = 0;           // m^3, or m^2
+  Vec3 first = Vec3::Zero();   // m^4, or m^3
+  Mat3 second = Mat3::Zero();  // m^5, or m^4
 };
 
 Vec3 vertexMean(const TriangleMesh& mesh) {
@@ -41,21 +41,46 @@ Vec3 vertexMean(const TriangleMesh& mesh) {
   return sum.total() / static_cast<double>(mesh.vertices.size());
 }
 
-Moments computeMoments(const TriangleMesh& mesh) {
+// The sums over triangles (a, b, c), s = a + b + c, of w, w s and w (a a^T + b b^T + c c^T + s s^T), with a weight w.
+template <typename Weight>
+Moments weightedSums(const TriangleMesh& mesh, const Weight& weightOf) {
   const Vec3 reference = vertexMean(mesh);
-  CompensatedSum<double> volume(0);
+  CompensatedSum<double> zeroth(0);
   CompensatedSum<Vec3> first(Vec3::Zero());
   CompensatedSum<Mat3> second(Mat3::Zero());
   for (const auto& [i, j, k] : mesh.triangles) {
     const Vec3 a = mesh.vertices[i] - reference, b = mesh.vertices[j] - reference, c = mesh.vertices[k] - reference;
     const Vec3 sum = a + b + c;
-    const double sixVolumes = a.dot(b.cross(c));
-    volume.add(sixVolumes);
-    first.add(sixVolumes * sum);
-    second.add(sixVolumes * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose()));
+    const double weight = weightOf(a, b, c);
+    zeroth.add(weight);
+    first.add(weight * sum);
+    second.add(weight * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose()));
   }
-  // Of a tetrahedron (0, a, b, c): V, V (a + b + c) / 4, V (a a^T + b b^T + c c^T + s s^T) / 20.
-  return {reference, volume.total() / 6, first.total() / 24, second.total() / 120};
+  return {reference, zeroth.total(), first.total(), second.total()};
+}
+
+// Of a tetrahedron (0, a, b, c): V, V s / 4, V (a a^T + b b^T + c c^T + s s^T) / 20; V = a . (b x c) / 6.
+Moments momentsOfSolid(const TriangleMesh& mesh) {
+  const Moments sums =
+      weightedSums(mesh, [](const Vec3& a, const Vec3& b, const Vec3& c) { return a.dot(b.cross(c)); });
+  return {sums.reference, sums.zeroth / 6, sums.first / 24, sums.second / 120};
+}
+
+// Of a triangle: A, A s / 3, A (a a^T + b b^T + c c^T + s s^T) / 12; A = |(b - a) x (c - a)| / 2.
+Moments momentsOfSurface(const TriangleMesh& mesh) {
+  const Moments sums =
+      weightedSums(mesh, [](const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a).norm(); });
+  return {sums.reference, sums.zeroth / 2, sums.first / 6, sums.second / 24};
+}
+
+// `density`: kg/m^3, or kg/m^2 of a surface.
+MassProperties propertiesOf(const Moments& moments, double density) {
+  CRADLE_CHECK(density > 0);
+  CRADLE_CHECK(moments.zeroth > 0);
+  const Vec3 offset = moments.first / moments.zeroth;
+  const Mat3 central = moments.second - moments.zeroth * offset * offset.transpose();
+  return {density * moments.zeroth, moments.reference + offset,
+          density * (central.trace() * Mat3::Identity() - central)};
 }
 
 }  // namespace
@@ -72,13 +97,11 @@ double signedVolume(const TriangleMesh& mesh) {
 }
 
 MassProperties computeMassProperties(const TriangleMesh& mesh, double density) {
-  CRADLE_CHECK(density > 0);
-  const Moments moments = computeMoments(mesh);
-  CRADLE_CHECK(moments.volume > 0);
-  const Vec3 offset = moments.first / moments.volume;
-  const Mat3 central = moments.second - moments.volume * offset * offset.transpose();
-  return {density * moments.volume, moments.reference + offset,
-          density * (central.trace() * Mat3::Identity() - central)};
+  return propertiesOf(momentsOfSolid(mesh), density);
+}
+
+MassProperties computeShellProperties(const TriangleMesh& mesh, double thickness, double density) {
+  return propertiesOf(momentsOfSurface(mesh), thickness * density);
 }
 
 }  // namespace cradle

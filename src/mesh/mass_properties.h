@@ -19,4 +19,9 @@ double signedVolume(const TriangleMesh& mesh);
 /// O(triangles).
 MassProperties computeMassProperties(const TriangleMesh& mesh, double density);
 
+/// Mass properties of a shell of a `thickness` (m, > 0) that is small against its radii of curvature: the triangles of
+/// `mesh` as a sheet of uniform `density` (kg/m^3, > 0). They may be open, and wound in any way; their area is
+/// positive. O(triangles).
+MassProperties computeShellProperties(const TriangleMesh& mesh, double thickness, double density);
+
 }  // namespace cradle

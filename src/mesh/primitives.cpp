@@ -106,6 +106,41 @@ MassProperties massProperties(const Capsule& capsule, double density) {
   return centred(middle + caps, Vec3(across, middle * r * r / 2 + 0.4 * caps * r * r, across));
 }
 
+MassProperties shellProperties(const Sphere& sphere, double surfaceDensity) {
+  const double squared = sphere.radius * sphere.radius, mass = surfaceDensity * 4 * pi * squared;
+  return centred(mass, Vec3::Constant(2.0 / 3 * mass * squared));
+}
+
+// Two plates across each axis: m (b^2 + c^2) / 12 about it, and m c^2 / 12 + m a^2 / 4 about the others.
+MassProperties shellProperties(const Box& box, double surfaceDensity) {
+  double mass = 0;
+  Vec3 moments = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+    const double a = box.size[axis], b = box.size[next], c = box.size[last], plates = 2 * surfaceDensity * b * c;
+    mass += plates;
+    moments[axis] += plates * (b * b + c * c) / 12;
+    moments[next] += plates * (c * c / 12 + a * a / 4);
+    moments[last] += plates * (b * b / 12 + a * a / 4);
+  }
+  return centred(mass, moments);
+}
+
+MassProperties shellProperties(const Cylinder& cylinder, double surfaceDensity) {
+  const double r = cylinder.radius, l = cylinder.length;
+  const double side = surfaceDensity * 2 * pi * r * l, ends = surfaceDensity * 2 * pi * r * r;  // both
+  const double across = side * (r * r / 2 + l * l / 12) + ends * (r * r + l * l) / 4;
+  return centred(side + ends, Vec3(across, side * r * r + ends * r * r / 2, across));
+}
+
+MassProperties shellProperties(const Capsule& capsule, double surfaceDensity) {
+  const double r = capsule.radius, l = capsule.length;
+  const double side = surfaceDensity * 2 * pi * r * l, caps = surfaceDensity * 4 * pi * r * r;  // both
+  // Half a sphere's centre of mass is r / 2 above its base; 2/3 m r^2 about the base's centre is moved there and out.
+  const double across = side * (r * r / 2 + l * l / 12) + caps * (2.0 / 3 * r * r + l * l / 4 + l * r / 2);
+  return centred(side + caps, Vec3(across, side * r * r + 2.0 / 3 * caps * r * r, across));
+}
+
 DrawnMesh tessellate(const Sphere& sphere, int segments) {
   CRADLE_CHECK(segments >= 6);
   const int rows = segments / 2;

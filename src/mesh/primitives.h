@@ -30,6 +30,12 @@ MassProperties massProperties(const Box& box, double density);
 MassProperties massProperties(const Cylinder& cylinder, double density);
 MassProperties massProperties(const Capsule& capsule, double density);
 
+/// The same of thin shells, caps included, of `density` x thickness (kg/m^2, > 0).
+MassProperties shellProperties(const Sphere& sphere, double surfaceDensity);
+MassProperties shellProperties(const Box& box, double surfaceDensity);
+MassProperties shellProperties(const Cylinder& cylinder, double surfaceDensity);
+MassProperties shellProperties(const Capsule& capsule, double surfaceDensity);
+
 /// Closed drawn meshes, wound outwards, with the normals of the true shape; vertices lie on it. `segments` is the
 /// number of facets around, at least 8 (a sphere has half as many rows, a cap of a capsule a quarter).
 DrawnMesh tessellate(const Sphere& sphere, int segments = 64);

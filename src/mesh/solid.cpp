@@ -135,7 +135,7 @@ void tellOverlaps(const PartReport& parts, std::vector<std::string>& problems) {
     problems.push_back(fmt::format("and {} more pairs of parts overlap", parts.overlaps.size() - told));
   problems.emplace_back(
       "where parts overlap their volume counts twice: unite them in the modelling program, use one object of the file, "
-      "make the body static, or give it `mass` with `inertiaTensor`");
+      "make the body static, or give it `massFrom: hull`, or `mass` with `inertiaTensor`");
 }
 
 /// Parts that face different ways have no volume together that could be judged.
@@ -171,8 +171,9 @@ SolidReport checkSolid(const TriangleMesh& mesh) {
   report.isSolid = report.problems.empty();
   if (!report.isClosed)
     report.problems.emplace_back(
-        "without a closed surface there is no volume, and so no mass: make the body static, give it `mass` with "
-        "`inertiaTensor`, or use `collision: hull`");
+        "without a closed surface there is no volume, and so no mass: make the body static, or give it `massFrom: "
+        "hull` "
+        "or `massFrom: shell`, or `mass` with `inertiaTensor` and `collision: hull`");
   return report;
 }
 

@@ -21,6 +21,8 @@ struct ModelFacts {
   bool isSolid = false;                   // bounds a volume
   std::string problems;                   // why not
   std::optional<MassProperties> uniform;  // at density 1, if it is a solid
+  std::optional<MassProperties> ofHull;   // of its hull at density 1, once somebody asked
+  std::optional<MassProperties> ofShell;  // of a shell at 1 kg/m^2, once somebody asked
   bool isRecognised = false;              // its shape, once somebody asked
   std::string hullFault;                  // why it has no hull, once somebody asked
   double size = 0;                        // m, radius of a sphere around it
@@ -72,14 +74,15 @@ std::optional<ModelFacts> load(const BodyDraft& draft, SceneDraft& scene, const 
   }
 }
 
-// A body that moves has a volume, or says itself how heavy it is, if forces move it.
+// A body that moves has a volume, or says itself how heavy it is, if forces move it, or what tells that.
 bool canMove(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults) {
   if (facts.isSolid) return true;
   const bool isDriven = draft.body.motion == Motion::driven;
-  const bool givesMass = isDriven || (draft.mass && draft.inertiaTensor);
+  const bool givesMass = isDriven || draft.massFrom != MassFrom::solid || (draft.mass && draft.inertiaTensor);
   const CollisionChoice choice = draft.body.collision;
   if (givesMass && facts.isClosed) return true;
   if (givesMass && (choice == CollisionChoice::none || choice == CollisionChoice::hull)) return true;
+  if (draft.massFrom != MassFrom::solid && choice == CollisionChoice::automatic) return true;  // as its hull
   const char* lacks = givesMass    ? "its collision needs a closed surface"
                       : draft.mass ? "mass alone needs a volume for its inertia"
                                    : "a body that moves needs a volume for its mass";
@@ -88,22 +91,26 @@ bool canMove(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults)
       fmt::format("{} is no solid ({}), and {}; mend the mesh, or give \"motion\": \"static\", or {}\"collision\": "
                   "\"hull\" or \"none\"",
                   inQuotes(draft.mesh.path), facts.problems, lacks,
-                  isDriven ? "" : "\"mass\" with \"inertiaTensor\" and "));
+                  isDriven ? "" : "\"massFrom\": \"hull\" or \"shell\", or \"mass\" with \"inertiaTensor\" and "));
   return false;
 }
 
-/// The hull of a mesh that has one.
-void findHull(const BodyDraft& draft, const TriangleMesh& solid, ModelFacts& facts, ModelCollision& collision,
-              FaultList& faults) {
+/// The hull of a mesh that has one; else the reason why not is kept. True if there is one.
+bool hasHull(const TriangleMesh& solid, ModelFacts& facts, ModelCollision& collision) {
   try {
     if (!collision.hull && facts.hullFault.empty()) collision.hull = convexHullOf(solid.vertices);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::mesh) throw;
     facts.hullFault = error.what();
   }
-  if (!facts.hullFault.empty())
-    addFault(faults, draft.collision ? *draft.collision : *draft.meshField,
-             fmt::format("{}; give the body \"collision\": \"none\", or a mesh that is not flat", facts.hullFault));
+  return facts.hullFault.empty();
+}
+
+void findHull(const BodyDraft& draft, const TriangleMesh& solid, ModelFacts& facts, ModelCollision& collision,
+              FaultList& faults) {
+  if (hasHull(solid, facts, collision)) return;
+  addFault(faults, draft.collision ? *draft.collision : *draft.meshField,
+           fmt::format("{}; give the body \"collision\": \"none\", or a mesh that is not flat", facts.hullFault));
 }
 
 // sphere and box are promises about the mesh that it must keep.
@@ -131,31 +138,61 @@ void chooseCollision(const BodyDraft& draft, ModelFacts& facts, Scene& scene, Fa
   if (collision.recognised.isConvex && !takesPrimitive) findHull(draft, solid, facts, collision, faults);
 }
 
-MassProperties massOf(const BodyDraft& draft, const ModelFacts& facts, const Scene& scene, FaultList& faults) {
+/// At density 1, of what `massFrom` names; unset if that is no solid.
+std::optional<MassProperties> uniformMass(const BodyDraft& draft, ModelFacts& facts, Scene& scene, FaultList& faults) {
+  if (draft.massFrom == MassFrom::solid) return facts.uniform;
+  const TriangleMesh& mesh = scene.models[static_cast<std::size_t>(facts.index)].solid;
+  if (draft.massFrom == MassFrom::shell) {
+    if (!facts.ofShell) facts.ofShell = computeShellProperties(mesh, 1, 1);
+    const auto& [mass, centerOfMass, inertiaTensor] = *facts.ofShell;
+    return MassProperties{draft.thickness * mass, centerOfMass, draft.thickness * inertiaTensor};
+  }
+  ModelCollision& collision = scene.modelCollisions[static_cast<std::size_t>(facts.index)];
+  if (!hasHull(mesh, facts, collision)) {
+    addFault(faults, *draft.massFromField,
+             fmt::format("{}; give the body \"massFrom\": \"shell\" with \"thickness\", or a mesh that is not flat",
+                         facts.hullFault));
+    return std::nullopt;
+  }
+  if (!facts.ofHull) facts.ofHull = computeMassProperties(trianglesOf(*collision.hull), 1);
+  return facts.ofHull;
+}
+
+MassProperties massOf(const BodyDraft& draft, ModelFacts& facts, Scene& scene, FaultList& faults) {
   if (draft.body.motion != Motion::dynamic) return {};
-  if (!facts.isSolid && !draft.centerOfMass)
+  const std::size_t before = faults.count();
+  const std::optional<MassProperties> uniform = uniformMass(draft, facts, scene, faults);
+  if (faults.count() != before) return {};
+  if (!uniform && !draft.centerOfMass)
     addWarning(faults, draft.field, "the mesh is no solid and centerOfMass is not given; it is taken as [0, 0, 0]");
   const double density = scene.materials[static_cast<std::size_t>(draft.body.material)].density;
-  return completeMass(draft, facts.uniform, density, faults);
+  return completeMass(draft, uniform, density, faults);
 }
 
 /// A mesh may come in any units; as a body it has a size like the other shapes.
 bool hasUsableSize(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults) {
   if (kLengths.holds(facts.size)) return true;
   addFault(faults, *draft.meshField,
-           fmt::format("the mesh has a radius of {:g} m at scale {:g}; allowed are {:g}..{:g} m; change \"scale\"",
-                       facts.size, draft.mesh.scale, kLengths.least, kLengths.most));
+           fmt::format(
+               "the mesh has a radius of {:g} m at scale {:g}; allowed are {:g}..{:g} m; change \"scale\" or \"units\"",
+               facts.size, draft.mesh.scale, kLengths.least, kLengths.most));
   return false;
 }
 
 void complete(BodyDraft& draft, ModelFacts& facts, SceneDraft& scene, Faults faults) {
   if (!hasUsableSize(draft, facts, faults.text)) return;
   if (draft.body.motion != Motion::fixed && !canMove(draft, facts, faults.mesh)) return;
+  const bool isOpen = !facts.isClosed && draft.massFrom != MassFrom::solid && draft.body.motion == Motion::dynamic;
+  if (isOpen && draft.body.collision == CollisionChoice::automatic) {
+    draft.body.collision = CollisionChoice::hull;
+    addWarning(faults.text, *draft.meshField, "the mesh is open: it collides as its convex hull");
+  }
   chooseCollision(draft, facts, scene.scene, faults.text);
   const MassProperties properties = massOf(draft, facts, scene.scene, faults.text);
   for (int i = draft.firstBody; i < draft.firstBody + draft.bodyCount; ++i) {
     Body& body = scene.scene.bodies[static_cast<std::size_t>(i)];
     body.shape = ModelShape{facts.index};
+    body.collision = draft.body.collision;
     body.massProperties = properties;
   }
   draft.size = facts.size;

@@ -58,10 +58,26 @@ bool isUsable(const MassProperties& properties) {
          kMoments.holds(diagonal.maxCoeff());
 }
 
+void parseMassFrom(ObjectReader& reader, BodyDraft& draft) {
+  FaultList& faults = reader.faults();
+  draft.massFromField = reader.find("massFrom");
+  draft.massFrom = reader.choice<MassFrom>(
+      "massFrom", {{"solid", MassFrom::solid}, {"hull", MassFrom::hull}, {"shell", MassFrom::shell}}, draft.massFrom);
+  const auto thickness = reader.find("thickness");
+  draft.thickness = reader.number("thickness", kLengths, "m", draft.thickness);
+  const bool isShell = draft.massFrom == MassFrom::shell;
+  if (thickness && !isShell)
+    addFault(faults, *thickness, "thickness goes with \"massFrom\": \"shell\" only; remove it");
+  if (isShell && !thickness && !reader.find("mass"))
+    addFault(faults, *draft.massFromField,
+             "a shell weighs density x area x thickness; give \"thickness\" (m), or \"mass\" (kg)");
+}
+
 }  // namespace
 
 void parseGivenMass(ObjectReader& reader, BodyDraft& draft) {
   FaultList& faults = reader.faults();
+  parseMassFrom(reader, draft);
   const auto mass = reader.find("mass");
   draft.mass = reader.optionalNumber("mass", kMasses, "kg");
   const auto centerOfMass = reader.find("centerOfMass"), inertiaTensor = reader.find("inertiaTensor");

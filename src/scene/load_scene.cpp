@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -46,7 +47,9 @@ SceneDraft parseText(const JsonValue& document, FaultList& faults) {
 }  // namespace
 
 std::string modelName(const MeshReference& reference) {
-  return fmt::format("{}#{}@{}", reference.path, reference.object, reference.scale);
+  constexpr std::array kUp = {"", "^x", "^y", "^z"};
+  return fmt::format("{}#{}@{}{}", reference.path, reference.object, reference.scale,
+                     kUp[static_cast<std::size_t>(reference.upAxis)]);
 }
 
 ModelSource modelFilesBeside(const std::string& scenePath, const std::string& assetRoot) {
@@ -61,7 +64,7 @@ ModelSource modelFilesBeside(const std::string& scenePath, const std::string& as
     if (!root.empty() && !isBelow(path, root))
       throw Error(ErrorKind::mesh, path,
                   fmt::format("is not below {}, and no other meshes are allowed here", root.string()));
-    return library->load({path, reference.object, reference.scale});
+    return library->load({path, reference.object, reference.scale, reference.upAxis});
   };
 }
 

@@ -56,7 +56,7 @@ void parseName(ObjectReader& reader, BodyDraft& draft) {
 void warnOfUnused(ObjectReader& reader, const BodyDraft& draft) {
   if (draft.body.motion == Motion::dynamic) return;
   const bool isDriven = draft.body.motion == Motion::driven;
-  std::vector<const char*> keys = {"mass", "centerOfMass", "inertiaTensor"};
+  std::vector<const char*> keys = {"massFrom", "thickness", "mass", "centerOfMass", "inertiaTensor"};
   if (!isDriven) keys.insert(keys.end(), {"linearVelocity", "angularVelocity", "angularVelocityBody"});
   for (const char* key : keys) {
     if (const auto field = reader.find(key))
@@ -65,12 +65,15 @@ void warnOfUnused(ObjectReader& reader, const BodyDraft& draft) {
   }
 }
 
-MassProperties uniformMass(const Shape& shape) {
-  constexpr double kUnitDensity = 1;
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return massProperties(*sphere, kUnitDensity);
-  if (const auto* box = std::get_if<Box>(&shape)) return massProperties(*box, kUnitDensity);
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return massProperties(*cylinder, kUnitDensity);
-  return massProperties(std::get<Capsule>(shape), kUnitDensity);
+/// At density 1. Primitives are their own hulls.
+MassProperties uniformMass(const BodyDraft& draft) {
+  return std::visit(
+      [&](const auto& shape) -> MassProperties {
+        if constexpr (requires { massProperties(shape, 1); })
+          return draft.massFrom == MassFrom::shell ? shellProperties(shape, draft.thickness) : massProperties(shape, 1);
+        return {};
+      },
+      draft.body.shape);
 }
 
 void completePrimitive(BodyDraft& draft, const SceneDraft& scene, FaultList& faults) {
@@ -81,7 +84,7 @@ void completePrimitive(BodyDraft& draft, const SceneDraft& scene, FaultList& fau
   }
   if (draft.body.motion == Motion::driven) return;
   const double density = scene.scene.materials[static_cast<std::size_t>(draft.body.material)].density;
-  draft.body.massProperties = completeMass(draft, uniformMass(draft.body.shape), density, faults);
+  draft.body.massProperties = completeMass(draft, uniformMass(draft), density, faults);
 }
 
 void addBody(const Body& body, SceneDraft& scene, const Field& name, FaultList& faults) {

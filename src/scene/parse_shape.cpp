@@ -105,8 +105,12 @@ void readShape(const Field& field, BodyDraft& draft, FaultList& faults) {
   if (!std::holds_alternative<JsonValue::Object>(field.value->content)) return;
   readShapeKeys(reader, draft);
   draft.mesh.object = reader.text("object", "");
-  draft.mesh.scale = reader.number("scale", kScales, "", 1);
-  for (const char* key : {"object", "scale"}) {
+  const double metres =
+      reader.choice<double>("units", {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}, 1);
+  draft.mesh.scale = reader.number("scale", kScales, "", 1) * metres;
+  draft.mesh.upAxis =
+      reader.choice<UpAxis>("upAxis", {{"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}}, draft.mesh.upAxis);
+  for (const char* key : {"object", "scale", "units", "upAxis"}) {
     const auto given = reader.find(key);
     if (given && !draft.meshField) addFault(faults, *given, fmt::format("{} goes with mesh only; remove it", key));
   }

@@ -13,6 +13,13 @@
 
 namespace cradle {
 
+/// What the mass of a body that gives none is spread over.
+enum class MassFrom {
+  solid,  // its volume
+  hull,   // that of its convex hull
+  shell,  // its surface, with a thickness
+};
+
 /// An entry of `bodies`: one body, or all its copies.
 struct BodyDraft {
   Field field;  // the entry
@@ -23,6 +30,9 @@ struct BodyDraft {
   std::optional<Field> meshField;
   MeshReference mesh;  // if meshField
 
+  MassFrom massFrom = MassFrom::solid;
+  std::optional<Field> massFromField;
+  double thickness = 1;               // m, > 0: of a shell
   std::optional<double> mass;         // kg
   std::optional<Vec3> centerOfMass;   // m, body's frame
   std::optional<Mat3> inertiaTensor;  // kg m^2, body's frame

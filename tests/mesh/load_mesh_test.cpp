@@ -70,6 +70,23 @@ TEST(LoadMesh, ZUpOf3dsBecomesYUp) {
   EXPECT_LE((bounds.max() - Vec3(0.3, 0.2, 0.1)).norm(), kFloat);
 }
 
+// The L prism's edges differ along all axes. An axis up is Y, and the solid stays right-handed.
+TEST(LoadMesh, TheAxisThatPointsUpBecomesY) {
+  const std::string path = writeFile("l.obj", objText(lPrismMesh(), "l"));
+  const auto centerWith = [](const std::string& file, UpAxis up) {
+    const TriangleMesh solid = loadModel({file, "", 1, up}).model.solid;
+    EXPECT_GT(signedVolume(solid), 0);
+    return computeMassProperties(solid, 1).centerOfMass;
+  };
+  const Vec3 inFile = centerWith(path, UpAxis::y);
+  EXPECT_EQ(centerWith(path, UpAxis::ofFormat), inFile);
+  EXPECT_LT((centerWith(path, UpAxis::z) - Vec3(inFile.x(), inFile.z(), -inFile.y())).norm(), 1e-15);
+  EXPECT_LT((centerWith(path, UpAxis::x) - Vec3(-inFile.y(), inFile.x(), inFile.z())).norm(), 1e-15);
+  const Vec3 of3ds = centerWith(asset("l_prism.3ds"), UpAxis::ofFormat);
+  EXPECT_EQ(centerWith(asset("l_prism.3ds"), UpAxis::z), of3ds);
+  EXPECT_LT((centerWith(asset("l_prism.3ds"), UpAxis::y) - Vec3(of3ds.x(), -of3ds.z(), of3ds.y())).norm(), 1e-15);
+}
+
 TEST(LoadMesh, ScaleMultipliesExactly) {
   const Model one = loadModel({asset("gear.3ds"), "", 1}).model,
               scaled = loadModel({asset("gear.3ds"), "", 1e-3}).model;

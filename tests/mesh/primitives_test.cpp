@@ -53,6 +53,35 @@ TEST(Primitives, BoxMeshHasItsClosedForm) {
   EXPECT_LE(inertiaError(found, exact), 1e-14);
 }
 
+// A facet of a surface is smaller than the surface by the same factors as above.
+template <typename Shape>
+void expectShellOfSecondOrder(const Shape& shape) {
+  const MassProperties exact = shellProperties(shape, kDensity);
+  const auto at = [&](int segments) {
+    return computeShellProperties(solidOf(tessellate(shape, segments)), 0.01, 100 * kDensity);
+  };
+  const MassProperties medium = at(64), fine = at(128);
+  EXPECT_NEAR((exact.mass - medium.mass) / (exact.mass - fine.mass), 4, 0.015);
+  EXPECT_NEAR(inertiaError(medium, exact) / inertiaError(fine, exact), 4, 0.03);
+  EXPECT_LE(fine.centerOfMass.norm(), 1e-15);
+}
+
+TEST(Primitives, ShellsAreThoseOfTheirMeshes) {
+  expectShellOfSecondOrder(Sphere{0.7});
+  expectShellOfSecondOrder(Cylinder{0.7, 1.9});
+  expectShellOfSecondOrder(Capsule{0.7, 1.9});
+  const Box box{{1, 2, 3}};
+  const MassProperties exact = shellProperties(box, kDensity);
+  const MassProperties found = computeShellProperties(solidOf(tessellate(box)), 0.01, 100 * kDensity);
+  EXPECT_NEAR(exact.mass, 22 * kDensity, 1e-12 * exact.mass);
+  EXPECT_NEAR(found.mass, exact.mass, 1e-14 * exact.mass);
+  EXPECT_LE(inertiaError(found, exact), 1e-14);
+  // Of a cube of edge a: 5/18 m a^2.
+  const MassProperties cube = shellProperties(Box{{2, 2, 2}}, 1);
+  EXPECT_NEAR(cube.inertiaTensor(1, 1), 5.0 / 18 * 24 * 4, 1e-13);
+  EXPECT_NEAR(shellProperties(Sphere{0.5}, 3).inertiaTensor(2, 2), 2.0 / 3 * 3 * std::numbers::pi * 0.25, 1e-14);
+}
+
 TEST(Primitives, CapsuleWithoutLengthIsSphere) {
   const MassProperties capsule = massProperties(Capsule{0.3, 0}, kDensity),
                        sphere = massProperties(Sphere{0.3}, kDensity);

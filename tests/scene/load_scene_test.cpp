@@ -86,7 +86,7 @@ TEST_F(EveryKey, MeshBodyHasWhatItWasGiven) {
   EXPECT_EQ(crate.material, 1);
   EXPECT_TRUE(crate.namesMaterial);
   ASSERT_EQ(scene_.models.size(), 1U);
-  EXPECT_EQ(scene_.models[0].name, "models/cube.3ds#Cube01@2");
+  EXPECT_EQ(scene_.models[0].name, "models/cube.3ds#Cube01@2^z");
   EXPECT_EQ(scene_.models[0].solid.vertices.at(7), Vec3(2, 2, 2));
   EXPECT_EQ(std::get<ModelShape>(crate.shape).model, 0);
   EXPECT_EQ(crate.collision, CollisionChoice::hull);

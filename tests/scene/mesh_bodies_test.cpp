@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "scene/scene_texts.h"
 
 namespace cradle {
@@ -69,6 +71,47 @@ TEST(MeshBody, OpenOneWithGivenInertiaMayMoveUnlessItsSurfaceMustCollide) {
   const Error error = errorOf(meshScene("open.3ds", kGivenMass));
   EXPECT_EQ(error.kind(), ErrorKind::mesh);
   EXPECT_THAT(error.what(), HasSubstr("collision needs a closed surface"));
+}
+
+// The hull of an open cube is the cube.
+TEST(MeshBody, OpenOneMayWeighWhatItsHullWeighsAndCollidesAsThat) {
+  const LoadedScene loaded = parse(meshScene("open.3ds", R"(, "mass": 6, "massFrom": "hull")"));
+  const Body& body = loaded.scene.bodies.at(0);
+  EXPECT_TRUE(body.massProperties.centerOfMass.isApprox(Vec3(0.5, 0.5, 0.5), 1e-14));
+  EXPECT_TRUE(body.massProperties.inertiaTensor.isApprox(Mat3::Identity(), 1e-14));
+  EXPECT_EQ(body.collision, CollisionChoice::hull);
+  EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("the mesh is open: it collides as its convex hull")));
+  EXPECT_THAT(parse(meshScene("open.3ds", R"(, "massFrom": "hull", "collision": "hull")")).warnings, ElementsAre());
+  EXPECT_THAT(errorOf(meshScene("open.3ds", R"(, "massFrom": "hull", "collision": "mesh")")).what(),
+              HasSubstr("collision needs a closed surface"));
+}
+
+// Six faces of 1 m^2, and the moments of a cube's surface, 5/18 m a^2; it collides as the cube.
+TEST(MeshBody, ShellWeighsDensityTimesAreaTimesThickness) {
+  const LoadedScene loaded = parse(
+      sceneWith(R"("materials": {"m": {"density": 500}}, "bodies": [{"name": "a", "material": "m", "massFrom": "shell",
+                "thickness": 0.01, "shape": {"mesh": "models/cube.3ds"}}])"));
+  const Body& body = loaded.scene.bodies.at(0);
+  EXPECT_NEAR(body.massProperties.mass, 30, 1e-12);
+  EXPECT_TRUE(body.massProperties.inertiaTensor.isApprox(30 * 5.0 / 18 * Mat3::Identity(), 1e-14));
+  EXPECT_EQ(body.collision, CollisionChoice::automatic);
+  EXPECT_THAT(loaded.warnings, ElementsAre());
+  EXPECT_GT(parse(meshScene("open.3ds", R"(, "massFrom": "shell", "thickness": 0.01)"))
+                .scene.bodies.at(0)
+                .massProperties.mass,
+            0);
+}
+
+TEST(MeshBody, UnitsMultiplyTheScale) {
+  for (const auto& [units, metres] :
+       std::map<std::string, double>{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}) {
+    const Scene scene =
+        parse(sceneWith(fmt::format(
+                  R"("bodies": [{{"name": "a", "shape": {{"mesh": "models/cube.3ds", "scale": 3, "units": "{}"}}}}])",
+                  units)))
+            .scene;
+    EXPECT_NEAR(scene.bodies.at(0).massProperties.centerOfMass.x(), 1.5 * metres, 1e-15) << units;
+  }
 }
 
 TEST(MeshBody, PartsThatOverlapHaveNoMassUnlessItIsGiven) {
