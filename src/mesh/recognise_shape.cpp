@@ -1,5 +1,5 @@
 // Each test proposes a placement from few vertices, then holds all of them against it. Numbers in a mesh file are
-// mostly floats, exact to 6e-8: hence 1e-6 of the size.
+// mostly floats, exact to 6e-8: hence 1e-6 of the size; or text of so many decimals, which tell how exact it is.
 
 #include "mesh/recognise_shape.h"
 
@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "math/rotation.h"
 #include "mesh/convex.h"
@@ -18,6 +19,8 @@ namespace cradle {
 namespace {
 
 constexpr double kTolerance = 1e-6;        // of the size
+constexpr double kMaxSlack = 1e-4;         // of the size: rounding to fewer digits makes other shapes
+constexpr int kMostDecimals = 9;           // m: lengths of scenes are no smaller
 constexpr double kFacetTolerance = 0.01;   // of the radius: how far inside a curved surface a facet may lie
 constexpr std::size_t kFewestFaces = 200;  // of a sphere
 
@@ -26,16 +29,41 @@ struct Candidate {
   const TriangleMesh& mesh;
   MassProperties properties;    // at density 1
   std::vector<Vec3> midpoints;  // m, of the triangles
-};
+  double slack = 0;             // m: that vertices may be off because of their decimals
 
-bool isNear(double a, double b, double size) {
-  return std::abs(a - b) <= kTolerance * size;
-}
+  double tolerance(double size) const { return kTolerance * size + slack; }  // m
+  bool isNear(double a, double b, double size) const { return std::abs(a - b) <= tolerance(size); }
+};
 
 Bounds boundsOf(const TriangleMesh& mesh) {
   Bounds bounds;
   for (const Vec3& vertex : mesh.vertices) bounds.extend(vertex);
   return bounds;
+}
+
+// How many coordinates are decimals in steps of `step` (m), up to the rounding of floats.
+std::size_t countDecimals(double step, const TriangleMesh& mesh) {
+  constexpr double kFloatRounding = 1e-7;
+  std::size_t count = 0;
+  for (const Vec3& vertex : mesh.vertices)
+    for (const double x : vertex) count += std::abs(x - step * std::round(x / step)) <= kFloatRounding * std::abs(x);
+  return count;
+}
+
+// How far (m) two vertices may be off each other because they were rounded to decimals; 0 if they were not. Rounding
+// leaves nine of ten coordinates with the last of the places; lengths that are few decimals by nature do not.
+double slackOf(const TriangleMesh& mesh) {
+  const double size = boundsOf(mesh).diagonal().norm();
+  const std::size_t all = 3 * mesh.vertices.size();
+  std::size_t before = 0;  // with one place less
+  for (int places = 0; places <= kMostDecimals; ++places) {
+    const double step = std::pow(10.0, -places);
+    if (step < kTolerance * size / 10) return 0;  // floats are no more exact
+    const std::size_t count = countDecimals(step, mesh);
+    if (count == all) return 2 * before > all ? 0 : std::min(std::numbers::sqrt3 * step, kMaxSlack * size);
+    before = count;
+  }
+  return 0;
 }
 
 // The right-handed order and signs of three axes that turn least from x, y, z; sizes go with them.
@@ -58,25 +86,25 @@ void alignWithFrame(Mat3& axes, Vec3& size) {
 }
 
 // Whether the eight vertices are those of the box with one corner at `corner` and `edges` from it, each once.
-bool hasCornersOf(const Vec3& corner, const Mat3& edges, const TriangleMesh& mesh, double size) {
+bool hasCornersOf(const Vec3& corner, const Mat3& edges, const TriangleMesh& mesh, double tolerance) {
   unsigned seen = 0;
   for (const Vec3& vertex : mesh.vertices)
     for (unsigned c = 0; c < 8; ++c) {
       const Vec3 expected = corner + edges * Vec3(c & 1 ? 1 : 0, c & 2 ? 1 : 0, c & 4 ? 1 : 0);
-      if ((vertex - expected).norm() <= kTolerance * size) seen |= 1U << c;
+      if ((vertex - expected).norm() <= tolerance) seen |= 1U << c;
     }
   return seen == 0xFF;
 }
 
 std::optional<PlacedPrimitive> findBox(const Candidate& candidate) {
-  const auto& [mesh, properties, midpoints] = candidate;
+  const TriangleMesh& mesh = candidate.mesh;
   if (mesh.vertices.size() != 8) return {};
   const double size = boundsOf(mesh).diagonal().norm();
   const std::vector<Vec3>& vertices = mesh.vertices;
   const Vec3& corner = vertices[0];
   const auto edge = [&](std::size_t i) { return Vec3(vertices[i] - corner); };
   const auto isRightAngle = [&](const Vec3& a, const Vec3& b) {
-    return std::abs(a.dot(b)) <= kTolerance * a.norm() * b.norm();
+    return std::abs(a.dot(b)) <= kTolerance * a.norm() * b.norm() + candidate.slack * (a.norm() + b.norm());
   };
   for (std::size_t i = 1; i < 8; ++i)
     for (std::size_t j = i + 1; j < 8; ++j)
@@ -86,8 +114,9 @@ std::optional<PlacedPrimitive> findBox(const Candidate& candidate) {
         if (!isRightAngle(edge(i), edge(j)) || !isRightAngle(edge(j), edge(k)) || !isRightAngle(edge(k), edge(i)))
           continue;
         Vec3 lengths = edges.colwise().norm();
-        if (!hasCornersOf(corner, edges, mesh, size)) continue;
-        if (std::abs(properties.mass - lengths.prod()) > 10 * kTolerance * lengths.prod()) return {};
+        if (!hasCornersOf(corner, edges, mesh, 2 * candidate.tolerance(size))) continue;
+        const double relative = 10 * kTolerance + 3 * candidate.slack / lengths.minCoeff();
+        if (std::abs(candidate.properties.mass - lengths.prod()) > relative * lengths.prod()) return {};
         const Vec3 center = corner + edges * Vec3::Constant(0.5);
         Mat3 axes = edges.colwise().normalized();
         alignWithFrame(axes, lengths);
@@ -106,7 +135,7 @@ std::optional<PlacedPrimitive> findSphere(const Candidate& candidate) {
   for (const Vec3& vertex : mesh.vertices) radius += (vertex - center).norm();
   radius /= static_cast<double>(mesh.vertices.size());
 
-  const auto isOn = [&](const Vec3& v) { return isNear((v - center).norm(), radius, radius); };
+  const auto isOn = [&](const Vec3& v) { return candidate.isNear((v - center).norm(), radius, radius); };
   if (!std::all_of(mesh.vertices.begin(), mesh.vertices.end(), isOn)) return {};
   const auto isFlush = [&](const Vec3& m) { return (m - center).norm() >= (1 - kFacetTolerance) * radius; };
   if (!std::all_of(candidate.midpoints.begin(), candidate.midpoints.end(), isFlush)) return {};
@@ -115,7 +144,7 @@ std::optional<PlacedPrimitive> findSphere(const Candidate& candidate) {
   // so that balls meant to touch do touch.
   const Bounds bounds = boundsOf(mesh);
   const Vec3 half = bounds.sizes() / 2;
-  if ((half.array() - radius).abs().maxCoeff() <= kTolerance * radius)
+  if ((half.array() - radius).abs().maxCoeff() <= candidate.tolerance(radius))
     return PlacedPrimitive{Sphere{half.maxCoeff()}, {Quat::Identity(), bounds.center()}};
   return PlacedPrimitive{Sphere{radius}, {Quat::Identity(), center}};
 }
@@ -148,7 +177,7 @@ using SurfaceDistance = std::function<double(const Vec3&)>;
 bool fits(const Candidate& candidate, const RigidTransform& bodyFromShape, double radius, double size,
           const SurfaceDistance& distance) {
   const RigidTransform shapeFromBody = bodyFromShape.inverse();
-  const auto isOn = [&](const Vec3& v) { return std::abs(distance(shapeFromBody * v)) <= kTolerance * size; };
+  const auto isOn = [&](const Vec3& v) { return std::abs(distance(shapeFromBody * v)) <= candidate.tolerance(size); };
   const auto isFlush = [&](const Vec3& m) { return std::abs(distance(shapeFromBody * m)) <= kFacetTolerance * radius; };
   return std::all_of(candidate.mesh.vertices.begin(), candidate.mesh.vertices.end(), isOn) &&
          std::all_of(candidate.midpoints.begin(), candidate.midpoints.end(), isFlush);
@@ -172,9 +201,10 @@ std::optional<PlacedPrimitive> fitCylinder(const AxialExtent& extent, const Cand
     std::array<Vec3, 3> corners;
     for (std::size_t c = 0; c < 3; ++c) corners[c] = shapeFromBody * candidate.mesh.vertices[triangle[c]];
     const auto isOnEnd = [&](double end) {
-      return std::all_of(corners.begin(), corners.end(), [&](const Vec3& p) { return isNear(p.y(), end, size); });
+      return std::all_of(corners.begin(), corners.end(),
+                         [&](const Vec3& p) { return candidate.isNear(p.y(), end, size); });
     };
-    const auto isOnSide = [&](const Vec3& p) { return isNear(fromAxis(p), radius, size); };
+    const auto isOnSide = [&](const Vec3& p) { return candidate.isNear(fromAxis(p), radius, size); };
     if (!isOnEnd(length / 2) && !isOnEnd(-length / 2) && !std::all_of(corners.begin(), corners.end(), isOnSide))
       return {};
   }
@@ -183,7 +213,7 @@ std::optional<PlacedPrimitive> fitCylinder(const AxialExtent& extent, const Cand
 
 std::optional<PlacedPrimitive> fitCapsule(const AxialExtent& extent, const Candidate& candidate) {
   const double radius = extent.across, length = extent.high - extent.low - 2 * radius;
-  if (length <= kTolerance * radius) return {};
+  if (length <= candidate.tolerance(radius)) return {};
   const SurfaceDistance distance = [&](const Vec3& p) {
     const double beyond = std::max(0.0, std::abs(p.y()) - length / 2);
     return Vec3(p.x(), beyond, p.z()).norm() - radius;
@@ -212,17 +242,18 @@ std::vector<Vec3> likelyAxes(const Candidate& candidate) {
   return axes;
 }
 
-// Axes of a frame are meant exactly, where a float comes as close as it can.
-Vec3 snapped(const Vec3& axis) {
+// Axes of a frame are meant exactly, where numbers of the file come as close as they can.
+Vec3 snapped(const Vec3& axis, const Candidate& candidate) {
   constexpr double kFloatRounding = 1e-7;
+  const double rounding = kFloatRounding + candidate.slack / boundsOf(candidate.mesh).diagonal().norm();
   for (int i = 0; i < 3; ++i)
-    if ((axis.cwiseAbs() - Vec3::Unit(i)).norm() < kFloatRounding) return Vec3::Unit(i);
+    if ((axis.cwiseAbs() - Vec3::Unit(i)).norm() < rounding) return Vec3::Unit(i);
   return axis;
 }
 
 std::optional<PlacedPrimitive> findRevolved(const Candidate& candidate) {
   for (const Vec3& axis : likelyAxes(candidate)) {
-    const AxialExtent extent = measureAlong(snapped(axis), candidate);
+    const AxialExtent extent = measureAlong(snapped(axis, candidate), candidate);
     if (const auto cylinder = fitCylinder(extent, candidate)) return cylinder;
     if (const auto capsule = fitCapsule(extent, candidate)) return capsule;
   }
@@ -233,12 +264,12 @@ std::optional<PlacedPrimitive> findRevolved(const Candidate& candidate) {
 
 RecognisedShape recogniseShape(const TriangleMesh& mesh) {
   if (!checkSolid(mesh).isSolid) return {};
-  Candidate candidate{mesh, computeMassProperties(mesh, 1), {}};
+  Candidate candidate{mesh, computeMassProperties(mesh, 1), {}, slackOf(mesh)};
   for (const auto& [i, j, k] : mesh.triangles)
     candidate.midpoints.push_back((mesh.vertices[i] + mesh.vertices[j] + mesh.vertices[k]) / 3);
   for (const auto& find : {findBox, findSphere, findRevolved})
     if (const auto primitive = find(candidate)) return {primitive, true};
-  return {std::nullopt, isConvex(mesh)};
+  return {std::nullopt, isConvex(mesh, candidate.slack)};
 }
 
 std::string shapeName(const RecognisedShape& shape) {

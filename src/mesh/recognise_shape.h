@@ -20,8 +20,8 @@ struct RecognisedShape {
   bool isConvex = false;  // true for primitives
 };
 
-/// Tries box (8 vertices, 6 planes, edges orthogonal to 1e-6), sphere (vertices equidistant from their mean to 1e-6, at
-/// least 200 faces, face midpoints within 1 % of the radius), cylinder, capsule, convex, in this order.
+/// Tries box (8 vertices, 6 planes, edges orthogonal to 1e-6), sphere (equidistant vertices, to 1e-6 or the decimals of
+/// the file; 200 faces at least, midpoints within 1 % of the radius), cylinder, capsule, convex, in this order.
 RecognisedShape recogniseShape(const TriangleMesh& mesh);
 
 /// "box", "sphere", "cylinder", "capsule", "convex" or "mesh".

@@ -59,6 +59,37 @@ TEST(RecogniseShape, TurnedBoxIsPlacedWhereItIs) {
   }
 }
 
+// As text with six decimals, the default of most programs that write OBJ files: 5e-7 m is more than 1e-6 of the size.
+TriangleMesh asText(const TriangleMesh& mesh) {
+  return asFloats(moved(mesh, [](const Vec3& v) { return Vec3((1e6 * v).array().round() / 1e6); }));
+}
+
+TEST(RecogniseShape, SmallShapesWrittenWithSixDecimalsAreWhatTheyAre) {
+  const RigidTransform place{Quat(Eigen::AngleAxisd(0.8, Vec3(0.48, 0.6, 0.64))), {0.3, -0.2, 0.1}};
+  for (const double size : {0.02, 0.1, 1.0}) {
+    const auto written = [&](const DrawnMesh& drawn) { return asText(placed(solidOf(drawn), place)); };
+    expectRecognised<Sphere>(written(tessellate(Sphere{size})), place.translation);
+    expectRecognised<Box>(written(tessellate(Box{size * Vec3(1, 2, 3)})), place.translation);
+    expectRecognised<Cylinder>(written(tessellate(Cylinder{size, 3 * size})), place.translation);
+    expectRecognised<Capsule>(written(tessellate(Capsule{size, 3 * size})), place.translation);
+    const TriangleMesh tapered = moved(solidOf(tessellate(Cylinder{size, 3 * size}, 24)), [&](const Vec3& v) {
+      const double narrower = 1 - 0.2 * v.y() / size;
+      return Vec3(narrower * v.x(), v.y(), narrower * v.z());
+    });
+    EXPECT_EQ(nameOf(asText(placed(tapered, place))), "convex") << size;
+    EXPECT_EQ(nameOf(asText(placed(moved(lPrismMesh(), [&](const Vec3& v) { return Vec3(size * v); }), place))), "mesh")
+        << size;
+  }
+}
+
+// Lengths of few decimals by nature are exact.
+TEST(RecogniseShape, LengthsOfFewDecimalsAreExact) {
+  TriangleMesh wedge = boxMesh({1, 2, 3});
+  for (Vec3& vertex : wedge.vertices)
+    if (vertex.y() > 0.5 && vertex.x() > 0) vertex.y() -= 0.01;
+  EXPECT_EQ(nameOf(wedge), "convex");
+}
+
 TEST(RecogniseShape, SkewedBoxIsOnlyConvex) {
   EXPECT_EQ(nameOf(moved(boxMesh({1, 2, 3}), [](const Vec3& v) { return Vec3(v.x() + 1e-5 * v.y(), v.y(), v.z()); })),
             "convex");
