@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "commands/body_list.h"
 #include "core/console.h"
 #include "core/error.h"
 #include "core/interruption.h"
@@ -214,6 +215,7 @@ void checkScene(const std::string& scenePath, const SceneOptions& options) {
   show("{}: \"{}\" is in order: {} ({} dynamic{}){}; {} s, {} frames\n", printableLine(scenePath),
        printableLine(scene.name), counted(scene.bodies.size(), "body", "bodies"), countBodies(scene, Motion::dynamic),
        driven > 0 ? fmt::format(", {} driven", driven) : "", linksOf(scene), scene.duration, lastFrame(scene) + 1);
+  for (const std::string& line : describeBodies(scene)) show("  {}\n", line);
 }
 
 }  // namespace cradle

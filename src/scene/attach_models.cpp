@@ -14,6 +14,8 @@
 namespace cradle {
 namespace {
 
+constexpr double kLikelyMillimetres = 20;  // m: larger bodies are rare in scenes, parts of 20 mm are not
+
 /// What there is to know of a model, found once for all bodies that use it.
 struct ModelFacts {
   int index = 0;                          // in Scene::models
@@ -169,6 +171,16 @@ MassProperties massOf(const BodyDraft& draft, ModelFacts& facts, Scene& scene, F
   return completeMass(draft, uniform, density, faults);
 }
 
+/// Most programs that draw parts write millimetres, and their files do not tell. A body of so many metres that gives
+/// neither scale nor units is likely one of them.
+void warnOfLikelyUnits(const BodyDraft& draft, const ModelFacts& facts, double mass, FaultList& faults) {
+  if (draft.givesUnits || 2 * facts.size < kLikelyMillimetres) return;
+  addWarning(faults, *draft.meshField,
+             fmt::format("the body is {:.3g} m large and weighs {:.3g} kg; if its file is in millimetres, give the "
+                         "shape \"units\": \"mm\", else \"units\": \"m\" silences this",
+                         2 * facts.size, mass));
+}
+
 /// A mesh may come in any units; as a body it has a size like the other shapes.
 bool hasUsableSize(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults) {
   if (kLengths.holds(facts.size)) return true;
@@ -189,6 +201,7 @@ void complete(BodyDraft& draft, ModelFacts& facts, SceneDraft& scene, Faults fau
   }
   chooseCollision(draft, facts, scene.scene, faults.text);
   const MassProperties properties = massOf(draft, facts, scene.scene, faults.text);
+  if (draft.body.motion == Motion::dynamic) warnOfLikelyUnits(draft, facts, properties.mass, faults.text);
   for (int i = draft.firstBody; i < draft.firstBody + draft.bodyCount; ++i) {
     Body& body = scene.scene.bodies[static_cast<std::size_t>(i)];
     body.shape = ModelShape{facts.index};

@@ -108,6 +108,7 @@ void readShape(const Field& field, BodyDraft& draft, FaultList& faults) {
   const double metres =
       reader.choice<double>("units", {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}, 1);
   draft.mesh.scale = reader.number("scale", kScales, "", 1) * metres;
+  draft.givesUnits = reader.find("units") || reader.find("scale");
   draft.mesh.upAxis =
       reader.choice<UpAxis>("upAxis", {{"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}}, draft.mesh.upAxis);
   for (const char* key : {"object", "scale", "units", "upAxis"}) {

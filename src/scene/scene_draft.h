@@ -28,7 +28,8 @@ struct BodyDraft {
   bool isSound = true;  // nothing wrong with the entry: what follows from it can be checked
 
   std::optional<Field> meshField;
-  MeshReference mesh;  // if meshField
+  MeshReference mesh;       // if meshField
+  bool givesUnits = false;  // or a scale
 
   MassFrom massFrom = MassFrom::solid;
   std::optional<Field> massFromField;

@@ -181,6 +181,15 @@ class Meshes(InTemporaryFolder):
         flat = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n"
         self.check_mesh("flat.obj", flat, ["volume"])
 
+    def test_check_says_what_bodies_there_are(self):
+        ball = {"shape": {"sphere": {"radius": 0.1}}, "mass": 2, "copies": {"count": [3, 1, 1]}}
+        path = self.write("s.json", scene(bodies=[
+            {"name": "ground", "shape": {"plane": {}}, "motion": "static"}, {"name": "ball", **ball, "position": [0, 1, 0]},
+            {"name": "lid", "shape": {"box": {"size": [1, 0.02, 0.5]}}, "mass": 7, "position": [0, 5, 0]}]))
+        self.assertEqual(cradle("check", path).stdout.splitlines()[1:], [
+            "  ground: plane, static", "  ball_0 and 2 more, each: sphere, 0.2 m, 2 kg",
+            "  lid: box, 1 x 0.02 x 0.5 m, 7 kg"])
+
     def test_scene_faults_win_over_mesh_faults(self):
         path = self.write("s.json", scene(duration=0, bodies=[{"name": "b", "shape": {"mesh": "nowhere.3ds"}}]))
         self.refuses(3, ["/duration"], "check", path)

@@ -102,6 +102,15 @@ TEST(MeshBody, ShellWeighsDensityTimesAreaTimesThickness) {
             0);
 }
 
+// Models whose name says so are 100 m large.
+TEST(MeshBody, LikelyMillimetresAreAWarningUnlessUnitsOrScaleAreGiven) {
+  const std::string shape = R"("bodies": [{"name": "a", "shape": {"mesh": "models/large.3ds")", end = "}}]";
+  EXPECT_THAT(parse(sceneWith(shape + end)).warnings, ElementsAre(HasSubstr("if its file is in millimetres")));
+  EXPECT_THAT(parse(sceneWith(shape + R"(, "units": "m")" + end)).warnings, ElementsAre());
+  EXPECT_THAT(parse(sceneWith(shape + R"(, "scale": 1)" + end)).warnings, ElementsAre());
+  EXPECT_THAT(parse(sceneWith(shape + R"(}, "motion": "static"}])")).warnings, ElementsAre());
+}
+
 TEST(MeshBody, UnitsMultiplyTheScale) {
   for (const auto& [units, metres] :
        std::map<std::string, double>{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}) {

@@ -49,6 +49,8 @@ LoadedModel cubeModel(const MeshReference& reference) {
   }
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  if (reference.path == "models/large.3ds")
+    for (Vec3& vertex : mesh.vertices) vertex *= 100;
   if (reference.path == "models/open.3ds") mesh.triangles.pop_back();
   if (reference.path == "models/overlap.3ds") {  // with another, half a side on
     for (std::uint32_t i = 0; i < 8; ++i) mesh.vertices.push_back(mesh.vertices[i] + reference.scale * Vec3(0.5, 0, 0));
