@@ -84,7 +84,8 @@ void addOverrides(CLI::App* command, CommandLine& line) {
 void addSimulate(CLI::App& app, CommandLine& line) {
   auto* simulate = addCommand(app, line, "simulate", "Simulate a scene into a trajectory file",
                               "cradle simulate scenes/newtons_cradle.json -o cradle.sqlite\n"
-                              "  cradle simulate scenes/newtons_cradle.json -o cradle.sqlite --strict",
+                              "  cradle simulate scenes/newtons_cradle.json -o cradle.sqlite --strict\n"
+                              "  cradle simulate stiff.json -o blow_up.sqlite --method explicitEuler --until-it-fails",
                               [&] { simulateScene(line.input, line.output, line.simulation, line.quiet); });
   simulate->add_option("scene", line.input, "scene file (JSON)")->required();
   addOutput(simulate, line, "trajectory file to write");
@@ -92,6 +93,11 @@ void addSimulate(CLI::App& app, CommandLine& line) {
   simulate->add_flag("--strict", line.simulation.isStrict,
                      "end with exit code 7 at the first thing that is not as the plan says: a promise given up, a "
                      "correction of the motion, bodies too deep in each other");
+  simulate
+      ->add_flag(
+          "--until-it-fails", line.simulation.untilItFails,
+          "where the run becomes unstable, keep the frames before that as a whole trajectory, to film the failure")
+      ->excludes("--strict");
   simulate->add_flag("--check-accuracy", line.simulation.checksAccuracy,
                      "run again, finer, and print the error of each body; where the scene is chaotic, say so");
 

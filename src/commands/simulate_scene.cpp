@@ -11,6 +11,7 @@
 
 #include "commands/body_list.h"
 #include "core/console.h"
+#include "core/cpu_stopwatch.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
@@ -185,6 +186,8 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   TrajectoryWriter writer(output, headerOf(scene, world.plan()));
   std::optional<StrictWatch> watch;
   if (options.isStrict) watch.emplace(scene, world.plan());
+  CpuStopwatch watchOfRun;
+  watchOfRun.start();
   const auto tellWhatIsKept = [&writer](ErrorKind kind, const std::string& what) {
     const std::string kept = writer.keptPath();
     throw Error(kind, "", kept.empty() ? what : fmt::format("{}; the frames up to then are in {}", what, kept));
@@ -192,7 +195,12 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   try {
     simulateInto(writer, scene, world, watch ? &*watch : nullptr, quiet);
   } catch (const Error& error) {
-    tellWhatIsKept(error.kind(), error.what());
+    if (!options.untilItFails || error.kind() != ErrorKind::unstable || !writer.hasFrame())
+      tellWhatIsKept(error.kind(), error.what());
+    watchOfRun.stop();
+    writer.finish({watchOfRun.seconds(), world.evaluations(), world.correctionCounts(),
+                   fmt::format("the run failed: {}", error.what())});
+    return warn(fmt::format("{}; {} has the frames up to then, whole", error.what(), output));
   } catch (const std::bad_alloc&) {
     tellWhatIsKept(ErrorKind::limit, "out of memory");
   }

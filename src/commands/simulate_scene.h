@@ -23,6 +23,7 @@ struct SceneOptions {
 struct SimulateOptions {
   SceneOptions scene;
   bool checksAccuracy = false;  // afterwards, by finer runs; printed
+  bool untilItFails = false;    // a run that becomes unstable leaves a whole trajectory of what was before
   bool isStrict = false;  // ends at the first broken promise or correction, or where bodies are too deep in others
 };
 

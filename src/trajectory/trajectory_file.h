@@ -38,6 +38,8 @@ class TrajectoryWriter {
   /// Events in order of time.
   void append(const Event& event);
 
+  bool hasFrame() const { return framesAppended_ > 0; }
+
   /// Completes the file and gives it its name, if it is to have one. There must be a frame. Throws Error(output).
   void finish(const RunCost& cost);
 

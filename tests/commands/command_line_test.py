@@ -290,6 +290,26 @@ class Trajectories(InTemporaryFolder):
         database = sqlite3.connect(self.path("x.sqlite.part"))
         self.assertGreaterEqual(database.execute("select count(*) from frame").fetchone()[0], 1)
 
+    def test_a_failure_can_be_kept_whole_and_filmed(self):
+        spring = {"name": "stiff", "bodyA": "ball", "anchorA": [0, 0.1, 0], "anchorB": [0, 1, 0], "stiffness": 1e5, "restLength": 0.5}
+        path = self.write("s.json", scene(springs=[spring], duration=20, method={"name": "explicitEuler"},
+                                          camera={"position": [0, 0, 5], "target": [0, 0, 0]}))
+        run = self.path("x.sqlite")
+        result = cradle("simulate", path, "-o", run, "--until-it-fails")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("unstable at", result.stderr)
+        self.assertIn("x.sqlite has the frames up to then, whole", result.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["s.json", "x.sqlite"])
+        database = sqlite3.connect(run)
+        frames = database.execute("select count(*) from frame").fetchone()[0]
+        self.assertGreaterEqual(frames, 2)
+        self.assertIn("the run failed", database.execute("select value from meta where key = 'promise'").fetchone()[0])
+        drawn = cradle("render", run, "-o", self.path("f"), "--size", "64x48")
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.assertGreaterEqual(len(os.listdir(self.path("f"))), frames - 1)
+        self.refuses(2, ["--strict", "--until-it-fails"], "simulate", path, "-o", self.path("y.sqlite"), "--strict",
+                     "--until-it-fails", leaves=["f", "s.json", "x.sqlite"])
+
     def test_interruption_keeps_a_valid_part(self):
         path = self.write("s.json", scene(duration=100000))
         for number, exit_code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
