@@ -56,8 +56,9 @@ double slackOf(const TriangleMesh& mesh) {
   const double size = boundsOf(mesh).diagonal().norm();
   const std::size_t all = 3 * mesh.vertices.size();
   std::size_t before = 0;  // with one place less
-  for (int places = 0; places <= kMostDecimals; ++places) {
-    const double step = std::pow(10.0, -places);
+  double parts = 1;        // of a m
+  for (int places = 0; places <= kMostDecimals; ++places, parts *= 10) {
+    const double step = 1 / parts;
     if (step < kTolerance * size / 10) return 0;  // floats are no more exact
     const std::size_t count = countDecimals(step, mesh);
     if (count == all) return 2 * before > all ? 0 : std::min(std::numbers::sqrt3 * step, kMaxSlack * size);

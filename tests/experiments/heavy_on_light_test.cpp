@@ -154,5 +154,19 @@ TEST(HeavyBall, IsCarriedByWhatHasAHundredMillionthOfItsMassAndElseEndsTheRun) {
     }
 }
 
+// An impact whose impulses were not found to the tolerance is counted, and its motion is not promised.
+TEST(HeavyBall, LeavesNoPromiseWhereAnImpactWasNotSolved) {
+  int unsolved = 0;
+  for (const double ratio : {1e4, 1e7, 3e7, 0.9e8})
+    for (const char* accuracy : {R"("accuracy": 1e-6)", R"("accuracy": 1e-8)"}) {
+      const RunCost cost = simulate(heavyBallOn(R"("box": {"size": [0.2, 0.2, 0.2]})", ratio, accuracy)).cost;
+      unsolved += !cost.corrections.empty();
+      EXPECT_THAT(cost.promise,
+                  cost.corrections.empty() ? testing::HasSubstr("; kept") : testing::HasSubstr("given up"))
+          << ratio << " " << accuracy;
+    }
+  EXPECT_GT(unsolved, 0);
+}
+
 }  // namespace
 }  // namespace cradle
