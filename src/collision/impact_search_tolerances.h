@@ -23,7 +23,7 @@ struct ImpactSearchTolerances {
   // m: how far round surfaces sink in where a joint holds them before that is an impact. Surfaces of that radius then
   // touch at an arm of sqrt(2 x 5e-10) = 3e-5 of the size from the joint, long enough for an impulse to turn the body.
   double pinnedBand;
-  // m: what leaves with a speed that takes it less high does not leave. A hundredth of the lowest rebound that is
+  // m: a feature that leaves too slowly to rise so high does not leave. A hundredth of the lowest rebound that is
   // followed (EventTolerances::kOpeningRatio).
   double leastRise;
   // m: of a gap. The coordinates of bodies far from the origin are rounded more coarsely.

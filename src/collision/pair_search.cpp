@@ -26,7 +26,7 @@ constexpr double kFirstGap = 1.0 / 1024;
 // Of a coordinate: so well a gap is known there.
 constexpr double kCoordinateRounding = 1e-15;
 // Times its rounding: a gap that leaves by no more is one again, or sinks in, when it has closed by this.
-constexpr double kRoundingsOfBounce = 8;
+constexpr double kBounceRatio = 8;
 // rad, in a step: of two bodies against each other, by which a manifold of convex ones may change its features.
 constexpr double kTurned = 0.1;
 
@@ -126,7 +126,7 @@ void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::op
   const double band = deadBand(touching);
   double threshold = 0;
   if (touches && isBounce(leavingSpeed(touching.tolerance) * step_.timeStep))
-    threshold = std::min(-band, start - kRoundingsOfBounce * gapRounding());
+    threshold = std::min(-band, start - kBounceRatio * gapRounding());
   else if (touches)
     threshold = std::min(0.0, start) - band;
   GapBounds bounds = bounds_;
@@ -313,7 +313,7 @@ void PairSearch::searchTouching(double start, const TouchingFeatures& touching, 
   if (away > lowest)
     searchFrom(from, away, lowest, best);
   else
-    searchFrom(0, start, lowest - (isFollowed ? std::min(band, kRoundingsOfBounce * rounding) : band), best);
+    searchFrom(0, start, lowest - (isFollowed ? std::min(band, kBounceRatio * rounding) : band), best);
 }
 
 /// Whether a feature that leaves with a speed (m, with the step as the unit of time) rises so high that it bounces.

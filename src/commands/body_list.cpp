@@ -7,7 +7,7 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMostLines = 30;
+constexpr std::size_t kMaxLines = 30;
 
 std::string sizesText(const Vec3& size) {
   return fmt::format("{:.4g} x {:.4g} x {:.4g} m", size.x(), size.y(), size.z());
@@ -53,7 +53,7 @@ std::vector<std::string> describeBodies(const Scene& scene) {
   const std::size_t count = scene.bodies.size();
   std::string text = count > 0 ? textOf(scene.bodies[0], models) : "", nextText;
   for (std::size_t i = 0, next = 1; i < count; i = next++) {
-    if (lines.size() == kMostLines) {
+    if (lines.size() == kMaxLines) {
       lines.push_back(fmt::format("and {} bodies more", count - i));
       break;
     }

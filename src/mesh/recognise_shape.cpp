@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kTolerance = 1e-6;        // of the size
 constexpr double kMaxSlack = 1e-4;         // of the size: rounding to fewer digits makes other shapes
-constexpr int kMostDecimals = 9;           // m: lengths of scenes are no smaller
+constexpr int kMaxDecimals = 9;            // m: lengths of scenes are no smaller
 constexpr double kFacetTolerance = 0.01;   // of the radius: how far inside a curved surface a facet may lie
 constexpr std::size_t kFewestFaces = 200;  // of a sphere
 
@@ -29,7 +29,7 @@ struct Candidate {
   const TriangleMesh& mesh;
   MassProperties properties;    // at density 1
   std::vector<Vec3> midpoints;  // m, of the triangles
-  double slack = 0;             // m: that vertices may be off because of their decimals
+  double slack = 0;             // m: by which vertices may be off because of their decimals
 
   double tolerance(double size) const { return kTolerance * size + slack; }  // m
   bool isNear(double a, double b, double size) const { return std::abs(a - b) <= tolerance(size); }
@@ -57,7 +57,7 @@ double slackOf(const TriangleMesh& mesh) {
   const std::size_t all = 3 * mesh.vertices.size();
   std::size_t before = 0;  // with one place less
   double parts = 1;        // of a m
-  for (int places = 0; places <= kMostDecimals; ++places, parts *= 10) {
+  for (int places = 0; places <= kMaxDecimals; ++places, parts *= 10) {
     const double step = 1 / parts;
     if (step < kTolerance * size / 10) return 0;  // floats are no more exact
     const std::size_t count = countDecimals(step, mesh);

@@ -76,7 +76,7 @@ std::optional<ModelFacts> load(const BodyDraft& draft, SceneDraft& scene, const 
   }
 }
 
-// A body that moves has a volume, or says itself how heavy it is, if forces move it, or what tells that.
+// A body that moves has a volume, or a hull or a shell that gives its mass, or the mass itself, if forces move it.
 bool canMove(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults) {
   if (facts.isSolid) return true;
   const bool isDriven = draft.body.motion == Motion::driven;
@@ -84,7 +84,8 @@ bool canMove(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults)
   const CollisionChoice choice = draft.body.collision;
   if (givesMass && facts.isClosed) return true;
   if (givesMass && (choice == CollisionChoice::none || choice == CollisionChoice::hull)) return true;
-  if (draft.massFrom != MassFrom::solid && choice == CollisionChoice::automatic) return true;  // as its hull
+  if (!isDriven && draft.massFrom != MassFrom::solid && choice == CollisionChoice::automatic)
+    return true;  // as its hull
   const char* lacks = givesMass    ? "its collision needs a closed surface"
                       : draft.mass ? "mass alone needs a volume for its inertia"
                                    : "a body that moves needs a volume for its mass";

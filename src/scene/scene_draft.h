@@ -13,7 +13,7 @@
 
 namespace cradle {
 
-/// What the mass of a body that gives none is spread over.
+/// The extent over which the mass of a body is spread.
 enum class MassFrom {
   solid,  // its volume
   hull,   // that of its convex hull

@@ -307,6 +307,7 @@ IslandHistory IslandGroup::historyOf(const std::vector<int>& clusters, const std
     const auto& end = old->historyAtStart.promiseEnd;
     if (!end || std::all_of(end->bodies.begin(), end->bodies.end(), isElsewhere)) continue;
     history.promiseEnd = history.promiseEnd ? bothOf(*history.promiseEnd, *end) : *end;
+    history.hasLeftEvents = history.hasLeftEvents || old->historyAtStart.hasLeftEvents;
     history.isInContactSteps = history.isInContactSteps || old->historyAtStart.isInContactSteps;
   }
   return history;

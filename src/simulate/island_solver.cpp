@@ -51,11 +51,12 @@ IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMe
       solver_(island_.assembly.mechanism.constraints, island_.assembly.mechanism.bodies),
       method_(method),
       promiseEnd_(std::move(history.promiseEnd)),
+      hasLeftEvents_(history.hasLeftEvents),
       jointStates_(island_.assembly.joints.size()) {
   if (history.isInContactSteps)
     changeToSteps();
   else if (method.isAdaptive())
-    moveByEvents(promiseEnd_.has_value());
+    moveByEvents(hasLeftEvents_);
   else
     moveBySteps(method);
   changeMotion();
@@ -136,7 +137,7 @@ void IslandSolver::advance(double time) {
 
 /// Whether a trial of events showed at its start that they do not serve.
 bool IslandSolver::mayNotGoOn() const {
-  return promiseEnd_ && events_ && !events_->fallbackReason().empty();
+  return hasLeftEvents_ && events_ && !events_->fallbackReason().empty();
 }
 
 bool IslandSolver::keepsConstraints() const {
@@ -149,6 +150,7 @@ void IslandSolver::changeMotion() {
   if (events_) {
     if (events_->fallbackReason().empty()) return;
     if (!promiseEnd_) endPromise(*events_);
+    hasLeftEvents_ = true;
     island_.assembly.mechanism.contacts.clear();
     return changeToSteps();
   }

@@ -19,6 +19,7 @@ constexpr double kTrialTime = 0.05;  // s: after that, contacts that were too mu
 /// What an island takes over from those that its bodies were in. Contact steps are those at their last step's end.
 struct IslandHistory {
   std::optional<PromiseEnd> promiseEnd;
+  bool hasLeftEvents = false;  // for contact steps, once
   bool isInContactSteps = false;
 };
 
@@ -88,7 +89,7 @@ class IslandSolver {
   std::vector<StartedPush> pushesAt(double time) const { return island_.pushes.startedBy(time); }
 
   /// What an island goes on with that begins from the last step's end.
-  IslandHistory history() const { return {promiseEnd_, steps_ != nullptr}; }
+  IslandHistory history() const { return {promiseEnd_, hasLeftEvents_, steps_ != nullptr}; }
 
  private:
   void advance(double time);
@@ -134,6 +135,7 @@ class IslandSolver {
   ChosenMethod method_;
   std::optional<ConservationRecord> record_;  // unless others judge the island
   std::optional<PromiseEnd> promiseEnd_;
+  bool hasLeftEvents_;             // once: events that come back are a trial
   double nextTrial_ = 0;           // s: when events may serve again
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not
   std::vector<char> still_;        // bodies that the step has not moved

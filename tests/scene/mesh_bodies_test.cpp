@@ -82,6 +82,10 @@ TEST(MeshBody, OpenOneMayWeighWhatItsHullWeighsAndCollidesAsThat) {
   EXPECT_EQ(body.collision, CollisionChoice::hull);
   EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("the mesh is open: it collides as its convex hull")));
   EXPECT_THAT(parse(meshScene("open.3ds", R"(, "massFrom": "hull", "collision": "hull")")).warnings, ElementsAre());
+  // Of a driven body massFrom is not used: it says nothing of the collision either.
+  const std::string driven = R"(, "massFrom": "hull", "motion": "driven", "linearVelocity": [1, 0, 0])";
+  EXPECT_THAT(errorOf(meshScene("open.3ds", driven)).what(),
+              HasSubstr("give \"motion\": \"static\", or \"collision\""));
   EXPECT_THAT(errorOf(meshScene("open.3ds", R"(, "massFrom": "hull", "collision": "mesh")")).what(),
               HasSubstr("collision needs a closed surface"));
 }
