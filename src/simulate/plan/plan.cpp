@@ -147,18 +147,24 @@ bool hasDenseOnes(const Scene& scene, const IslandPlan& island) {
   });
 }
 
-bool hasMotors(const Scene& scene, const IslandPlan& island) {
+/// Whether hinges or sliders of an island have `part`: a motor, or limits.
+template <class Part>
+bool haveJoints(Part part, const Scene& scene, const IslandPlan& island) {
   return std::any_of(island.links.begin(), island.links.end(), [&](const LinkIndex& link) {
-    if (link.kind == LinkKind::hinge) return scene.hinges[link.index].motor.has_value();
-    return link.kind == LinkKind::slider && scene.sliders[link.index].motor.has_value();
+    if (link.kind == LinkKind::hinge) return part(scene.hinges[link.index]);
+    return link.kind == LinkKind::slider && part(scene.sliders[link.index]);
   });
 }
 
-/// What motors and driven bodies ask of the method, and leave of closed forms.
+/// What limits, motors and driven bodies ask of the method, and leave of closed forms.
 std::string reasonOfDrives(const Scene& scene, const IslandPlan& island) {
+  const auto hasMotor = [](const auto& joint) { return joint.motor.has_value(); };
+  const auto hasLimits = [](const auto& joint) { return joint.limits.has_value(); };
   std::string reason;
-  if (island.method.isAdaptive() && hasMotors(scene, island))
+  if (island.method.isAdaptive() && haveJoints(hasMotor, scene, island))
     reason += "; they end where a motor comes to its velocity, or to the end of its force";
+  if (island.method.isAdaptive() && haveJoints(hasLimits, scene, island))
+    reason += "; a joint that comes to a limit is an event";
   if (!island.driven.empty())
     reason += "; driven bodies are where they are told, exactly, and leave no closed form to what they move";
   return reason;

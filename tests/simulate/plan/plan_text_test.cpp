@@ -118,7 +118,7 @@ TEST(PlanText, CountsWhatIsDriven) {
 }
 
 // A ball that a driven one may strike has no closed form; a wheel with a motor has steps that end at the motor's
-// changes.
+// changes, one with limits meets them as events.
 TEST(PlanText, TellsWhatDrivesLeave) {
   const auto textOf = [](const std::string& members) {
     const Scene scene = sceneWith(R"("duration": 1, "gravity": [0, 0, 0], "materials": {"m": {"staticFriction": 0,
@@ -131,11 +131,11 @@ TEST(PlanText, TellsWhatDrivesLeave) {
       textOf(R"("bodies": [)" + ball + R"(, {"name": "bat", "shape": {"sphere": {"radius": 0.1}},
       "motion": "driven", "position": [1, 0, 0], "linearVelocity": [-1, 0, 0], "material": "m"}])");
   EXPECT_THAT(drivenText, testing::HasSubstr("exactly, and leave no closed form to what they move"));
-  const std::string hinge = R"("hinges": [{"bodyA": "a", "anchorB": [0, 0, 0]%}])";
-  for (const std::string motor : {"", R"(, "motor": {"torque": 1})"}) {
-    std::string joint = hinge;
-    joint.replace(joint.find('%'), 1, motor);
-    EXPECT_EQ(textOf(R"("bodies": [)" + ball + "], " + joint).find("motor") != std::string::npos, !motor.empty());
+  for (const std::string part : {"", R"(, "motor": {"torque": 1})", R"(, "limits": {"upper": 1})"}) {
+    const std::string text =
+        textOf(R"("bodies": [)" + ball + R"(], "hinges": [{"bodyA": "a", "anchorB": [0, 0, 0])" + part + "}]");
+    EXPECT_EQ(text.find("motor comes to its velocity") != std::string::npos, part.find("motor") != std::string::npos);
+    EXPECT_EQ(text.find("comes to a limit") != std::string::npos, part.find("limits") != std::string::npos);
   }
 }
 
