@@ -20,6 +20,7 @@
 #include "commands/inspect_mesh.h"
 #include "commands/pictures.h"
 #include "commands/plan_scene.h"
+#include "commands/plot_runs.h"
 #include "commands/simulate_scene.h"
 #include "commands/study_scenes.h"
 #include "core/console.h"
@@ -42,6 +43,7 @@ struct CommandLine {
   SimulateOptions simulation;
   PictureOptions pictures;
   CompareOptions comparison;
+  PlotOptions plot;
   double scale = 1;
   bool json = false, quiet = false;
   std::function<void()> command;
@@ -135,6 +137,35 @@ void addStudy(CLI::App& app, CommandLine& line) {
                                [&] { chartStability(line.output, line.maps, line.quiet); });
   addOutput(stability, line, "folder for the maps (CSV, SVG, PNG)");
   stability->add_option("--maps", line.maps, "of " + namesOf(stabilityMaps()))->delimiter(',')->allow_extra_args(false);
+}
+
+void addPlot(CLI::App& app, CommandLine& line) {
+  auto* plot = addCommand(app, line, "plot", "Chart quantities of runs over time",
+                          "cradle plot a.sqlite b.sqlite -o heights.svg --quantity height:ball\n"
+                          "  cradle plot scenes/rod_pendulum.json -o methods.png --methods explicitEuler,rk4,plan "
+                          "--time-step 0.01 --quantity energyError,phase:bob",
+                          [&] {
+                            line.plot.scene = line.simulation.scene;
+                            line.plot.methods = line.methods;
+                            plotRuns(line.scenes, line.output, line.plot, line.quiet);
+                          });
+  plot->add_option("runs", line.scenes, "trajectories, or scene files, which are simulated")->required();
+  addOutput(plot, line, "chart to write (.svg or .png)");
+  plot->add_option("--quantity", line.plot.quantities,
+                   "what is shown, a panel each, with commas: energy, energyError, height:BODY, angle:BODY or "
+                   "angle:JOINT (of a pendulum), phase:BODY or phase:JOINT (its velocity over it), error, error:BODY "
+                   "(against --reference)")
+      ->capture_default_str();
+  plot->add_option("--reference", line.plot.reference, "trajectory or scene that errors are measured against");
+  plot->add_option("--methods", line.methods,
+                   "each scene is simulated by each: explicitEuler, semiImplicitEuler, rk4, dop853, or plan, the "
+                   "scene's own (default)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  plot->add_option("--time-step", line.simulation.scene.timeStep, "step of those methods in s");
+  plot->add_option("--accuracy", line.simulation.scene.accuracy, "in place of the scenes'");
+  plot->add_option("--duration", line.simulation.scene.duration, "in place of the scenes' durations, in s");
+  addAssetRoot(plot, line.simulation.scene.assetRoot);
 }
 
 void addPictures(CLI::App& app, CommandLine& line) {
@@ -291,6 +322,7 @@ int run(int argc, char** argv) {
       "COMMAND', says more.");
   addSimulate(app, line);
   addPictures(app, line);
+  addPlot(app, line);
   addStudy(app, line);
   addQuestions(app, line);
   checkValues(app);

@@ -213,7 +213,7 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
   std::optional<FolderLock> lock;
   takeFolder(folder, parseRange(options.frames, kMaxFrames), options, lock);
   if (options.overlay) parseOverlays(*options.overlay);
-  TrajectorySource source(input, quiet, options.assetRoot);
+  TrajectorySource source(input, quiet, {.assetRoot = options.assetRoot});
   const PictureOrder order(options, source.scene());
   const FrameRange range = parseFrames(options.frames, source);
   requireNoOthers(folder, source.frameCount());
@@ -245,7 +245,7 @@ void makeFilm(const std::string& input, const std::string& film, const PictureOp
   requireWritableFile(film);
   requireOtherFile(film, input);
   if (options.overlay) parseOverlays(*options.overlay);
-  TrajectorySource source(input, quiet, options.assetRoot);
+  TrajectorySource source(input, quiet, {.assetRoot = options.assetRoot});
   const PictureOrder order(options, source.scene());
   VideoEncoder encoder(film, {order.size.width, order.size.height, source.scene().output.framesPerSecond});
   const bool drawsBeside = isSeenFromTheStart(source.scene()) && !(order.overlays && order.overlays->needsWholeFilm());

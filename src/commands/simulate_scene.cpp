@@ -174,6 +174,22 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, St
   writer.finish(cost);
 }
 
+std::optional<std::string> simulateUntilItFails(TrajectoryWriter& writer, const Scene& scene, World& world,
+                                                bool quiet) {
+  CpuStopwatch stopwatch;
+  stopwatch.start();
+  try {
+    simulateInto(writer, scene, world, nullptr, quiet);
+    return std::nullopt;
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::unstable || !writer.hasFrame()) throw;
+    stopwatch.stop();
+    writer.finish({stopwatch.seconds(), world.evaluations(), world.correctionCounts(),
+                   fmt::format("the run failed: {}", error.what())});
+    return error.what();
+  }
+}
+
 void simulateScene(const std::string& scenePath, const std::string& output, const SimulateOptions& options,
                    bool quiet) {
   requireWritableFile(output);
@@ -186,21 +202,17 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   TrajectoryWriter writer(output, headerOf(scene, world.plan()));
   std::optional<StrictWatch> watch;
   if (options.isStrict) watch.emplace(scene, world.plan());
-  CpuStopwatch watchOfRun;
-  watchOfRun.start();
   const auto tellWhatIsKept = [&writer](ErrorKind kind, const std::string& what) {
     const std::string kept = writer.keptPath();
     throw Error(kind, "", kept.empty() ? what : fmt::format("{}; the frames up to then are in {}", what, kept));
   };
   try {
-    simulateInto(writer, scene, world, watch ? &*watch : nullptr, quiet);
+    if (!options.untilItFails)
+      simulateInto(writer, scene, world, watch ? &*watch : nullptr, quiet);
+    else if (const auto failure = simulateUntilItFails(writer, scene, world, quiet))
+      return warn(fmt::format("{}; {} has the frames up to then, whole", *failure, output));
   } catch (const Error& error) {
-    if (!options.untilItFails || error.kind() != ErrorKind::unstable || !writer.hasFrame())
-      tellWhatIsKept(error.kind(), error.what());
-    watchOfRun.stop();
-    writer.finish({watchOfRun.seconds(), world.evaluations(), world.correctionCounts(),
-                   fmt::format("the run failed: {}", error.what())});
-    return warn(fmt::format("{}; {} has the frames up to then, whole", error.what(), output));
+    tellWhatIsKept(error.kind(), error.what());
   } catch (const std::bad_alloc&) {
     tellWhatIsKept(ErrorKind::limit, "out of memory");
   }

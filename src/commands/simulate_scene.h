@@ -44,4 +44,8 @@ void warn(const std::string& warning);
 /// start; `watch` may be null.
 void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet);
 
+/// The same, but a run that becomes unstable after its first frame is finished as far as it went; its error is returned
+/// then, and told in the trajectory.
+std::optional<std::string> simulateUntilItFails(TrajectoryWriter& writer, const Scene& scene, World& world, bool quiet);
+
 }  // namespace cradle

@@ -1,5 +1,7 @@
 #include "commands/trajectory_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "commands/simulate_scene.h"
@@ -64,13 +66,13 @@ Scene sceneOf(const TrajectoryReader& trajectory) {
   return scene;
 }
 
-TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const std::string& assetRoot)
+TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const SceneOptions& options)
     : quiet_(quiet) {
   if (isDatabaseFile(sceneOrTrajectory)) {
     open(TrajectoryReader(sceneOrTrajectory));
     return;
   }
-  scene_ = loadSceneAndWarn(sceneOrTrajectory, {.assetRoot = assetRoot});
+  scene_ = loadSceneAndWarn(sceneOrTrajectory, options);
   refuseUnsupported(scene_);
   frameCount_ = lastFrame(scene_) + 1;
 }
@@ -81,12 +83,25 @@ void TrajectorySource::open(TrajectoryReader trajectory) {
   frameCount_ = reader_->frameCount();
 }
 
-void TrajectorySource::simulate() {
+/// Calls simulateInto(writer, world).
+template <class Simulate>
+void TrajectorySource::simulateBy(const Simulate& simulateInto) {
   if (reader_) return;
   World world(scene_);
   TrajectoryWriter writer(headerOf(scene_, world.plan()));
-  simulateInto(writer, scene_, world, nullptr, quiet_);
+  simulateInto(writer, world);
   open(TrajectoryReader(writer));
+}
+
+void TrajectorySource::simulate() {
+  simulateBy([this](TrajectoryWriter& writer, World& world) { simulateInto(writer, scene_, world, nullptr, quiet_); });
+}
+
+void TrajectorySource::simulateUntilItFails() {
+  simulateBy([this](TrajectoryWriter& writer, World& world) {
+    const std::optional<std::string> failure = cradle::simulateUntilItFails(writer, scene_, world, quiet_);
+    if (failure) warn(fmt::format("{}; the frames up to then are taken", *failure));
+  });
 }
 
 void TrajectorySource::simulateBeside(std::function<void(const std::string&)> warn,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/simulate_scene.h"
 #include "scene/scene.h"
 #include "simulate/frame_stream.h"
 #include "trajectory/trajectory_file.h"
@@ -20,9 +21,8 @@ Scene sceneOf(const TrajectoryReader& trajectory);
 /// the object, or beside the drawing.
 class TrajectorySource {
  public:
-  /// Opens the trajectory, or loads the scene, with its warnings on stderr; its meshes are below `assetRoot`, if that
-  /// is not empty.
-  TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const std::string& assetRoot = "");
+  /// Opens the trajectory, or loads the scene with `options`, its warnings on stderr.
+  TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const SceneOptions& options = {});
   TrajectorySource(const TrajectorySource&) = delete;
   TrajectorySource& operator=(const TrajectorySource&) = delete;
 
@@ -34,6 +34,9 @@ class TrajectorySource {
 
   /// Simulates the scene; with a trajectory there is nothing to do. To be called once, before frames are read.
   void simulate();
+
+  /// The same, but a run that becomes unstable after its first frame is told, and taken as far as it went.
+  void simulateUntilItFails();
 
   /// The same, but the simulation goes on while its frames are asked for, until forgetBefore(): it is as far as the
   /// latest of them. Warnings are told with the frame that they belong to, and the simulated time (s) inside a frame
@@ -61,6 +64,8 @@ class TrajectorySource {
 
  private:
   void open(TrajectoryReader trajectory);
+  template <class Simulate>
+  void simulateBy(const Simulate& simulateInto);
 
   bool quiet_;
   std::optional<TrajectoryReader> reader_;

@@ -16,9 +16,10 @@ namespace {
 constexpr StartFailure kNoGnuplot{ErrorKind::output, "gnuplot-nox"};
 constexpr std::size_t kLastBytes = 16;  // of a picture: its end is among them
 
-/// What gnuplot makes of `commands`, which has `end` among its last bytes: gnuplot says nothing of a full disk. `path`
-/// is for messages alone: gnuplot prints the picture, and knows no file that it could overwrite.
-std::string drawn(const std::string& commands, const std::string& end, const std::string& path) {
+/// What gnuplot makes of `commands`, which has the format's end among its last bytes: gnuplot says nothing of a full
+/// disk. `path` is for messages alone: gnuplot prints the picture, and knows no file that it could overwrite.
+std::string drawn(const std::string& commands, ChartFormat format, const std::string& path) {
+  const std::string end = format == ChartFormat::svg ? "</svg>" : "IEND";
   ChildProcess gnuplot({"gnuplot"}, kNoGnuplot);
   const bool taken = gnuplot.write(commands.data(), commands.size());
   if (gnuplot.finish() != 0 || !taken)
@@ -54,10 +55,16 @@ std::string drawingCommands(const std::string& drawing, ChartFormat format, int 
          drawing + "unset output\n";
 }
 
+void drawWithGnuplot(const std::string& path, ChartFormat format, const std::string& commands) {
+  PartFile file(path);
+  file.write(drawn(commands, format, path));
+  file.complete();
+}
+
 void drawWithGnuplot(const std::string& stem, const std::function<std::string(ChartFormat)>& commands) {
   PartFile svg(stem + ".svg"), png(stem + ".png");
-  svg.write(drawn(commands(ChartFormat::svg), "</svg>", stem + ".svg"));
-  png.write(drawn(commands(ChartFormat::png), "IEND", stem + ".png"));
+  svg.write(drawn(commands(ChartFormat::svg), ChartFormat::svg, stem + ".svg"));
+  png.write(drawn(commands(ChartFormat::png), ChartFormat::png, stem + ".png"));
   svg.complete();
   png.complete();
 }

@@ -23,6 +23,10 @@ enum class ChartFormat { svg, png };
 /// by which the sizes of markers look the same in both formats.
 std::string drawingCommands(const std::string& drawing, ChartFormat format, int height = 900);
 
+/// Writes a picture of that format, whole or not at all, with what gnuplot prints by `commands`. Throws Error(output)
+/// if gnuplot is missing or fails, or the picture is not whole.
+void drawWithGnuplot(const std::string& path, ChartFormat format, const std::string& commands);
+
 /// Writes stem.svg and stem.png, whole or not at all, with what gnuplot prints by the commands for each. Throws
 /// Error(output) if gnuplot is missing or fails, or a picture is not whole.
 void drawWithGnuplot(const std::string& stem, const std::function<std::string(ChartFormat)>& commands);

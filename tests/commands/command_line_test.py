@@ -56,7 +56,7 @@ class InTemporaryFolder(unittest.TestCase):
 
 class Usage(InTemporaryFolder):
     def test_help_of_every_command_has_an_example(self):
-        for command in ("simulate", "render", "encode", "video", "inspect", "check", "compare", "export", "study", "stability"):
+        for command in ("simulate", "render", "encode", "video", "inspect", "check", "compare", "export", "plot", "study", "stability"):
             result = cradle(command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Example:\n  cradle " + command, result.stdout)
@@ -309,6 +309,30 @@ class Trajectories(InTemporaryFolder):
         self.assertGreaterEqual(len(os.listdir(self.path("f"))), frames - 1)
         self.refuses(2, ["--strict", "--until-it-fails"], "simulate", path, "-o", self.path("y.sqlite"), "--strict",
                      "--until-it-fails", leaves=["f", "s.json", "x.sqlite"])
+
+    def test_plot_shows_methods_and_a_failure_in_one_chart(self):
+        spring = {"name": "stiff", "bodyA": "ball", "anchorA": [0, 0.1, 0], "anchorB": [0, 1, 0], "stiffness": 1e5, "restLength": 0.5}
+        path = self.write("s.json", scene(springs=[spring], duration=2))
+        chart = self.path("chart.svg")
+        result = cradle("plot", path, "-o", chart, "--methods", "explicitEuler,plan", "--time-step", "0.01",
+                        "--quantity", "energy,height:ball,error", "--reference", path)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("the frames up to then are taken", result.stderr)
+        self.assertEqual(self.listing(), ["chart.svg", "s.json"])
+        text = content(chart).decode()
+        for word in ("explicitEuler (unstable at", "plan", "height of ball (m)", "greatest error (m)"):
+            self.assertIn(word, text)
+        run = self.path("run.sqlite")
+        self.assertEqual(cradle("simulate", path, "-o", run).returncode, 0)
+        self.assertEqual(cradle("plot", run, "-o", self.path("chart.png")).returncode, 0)
+        there = self.listing()
+        for words, arguments in ((["chart.pdf", "FILE.svg"], ["-o", self.path("chart.pdf")]),
+                                 (["hight:ball", "height:BODY"], ["-o", chart, "--quantity", "hight:ball"]),
+                                 (['"bal"', "there are ball"], ["-o", chart, "--quantity", "height:bal"]),
+                                 (["error needs --reference"], ["-o", chart, "--quantity", "error"]),
+                                 (["--reference", "without"], ["-o", chart, "--reference", path]),
+                                 (["--methods", "trajectories"], ["-o", chart, "--methods", "rk4"])):
+            self.refuses(2, words, "plot", run, *arguments, leaves=there)
 
     def test_interruption_keeps_a_valid_part(self):
         path = self.write("s.json", scene(duration=100000))

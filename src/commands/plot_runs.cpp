@@ -1,0 +1,124 @@
+#include "commands/plot_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <filesystem>
+
+#include "commands/trajectory_source.h"
+#include "core/error.h"
+#include "core/output_path.h"
+#include "core/printable.h"
+#include "study/run_chart.h"
+
+namespace cradle {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPlan = "plan";  // the method that the scene or its plan names
+
+ChartFormat formatOf(const std::string& output) {
+  const std::string ending = fs::path(output).extension().string();
+  if (ending == ".svg") return ChartFormat::svg;
+  if (ending == ".png") return ChartFormat::png;
+  throw Error(ErrorKind::usage, output, "cannot tell the format from the name; allowed are FILE.svg and FILE.png");
+}
+
+/// What a run is made from.
+struct RunOrigin {
+  std::string input;   // scene or trajectory
+  std::string method;  // of scenes
+
+  bool isScene() const { return !isDatabaseFile(input); }
+};
+
+SceneOptions optionsOf(const RunOrigin& origin, const PlotOptions& options) {
+  SceneOptions scene = options.scene;
+  if (origin.method == kPlan)
+    scene.timeStep.reset();
+  else
+    scene.method = origin.method;
+  return scene;
+}
+
+/// Each input by the end of its path that no other has, scenes with their method where there are several.
+std::vector<std::string> runNames(const std::vector<RunOrigin>& origins, std::size_t methods) {
+  const auto stemOf = [](const RunOrigin& origin) { return fs::path(origin.input).stem().string(); };
+  const bool isOneScene = std::all_of(origins.begin(), origins.end(),
+                                      [&](const RunOrigin& each) { return each.input == origins[0].input; });
+  std::vector<std::string> names;
+  for (const RunOrigin& origin : origins) {
+    const bool isTaken = std::any_of(origins.begin(), origins.end(), [&](const RunOrigin& other) {
+      return other.input != origin.input && stemOf(other) == stemOf(origin);
+    });
+    const std::string name = isTaken ? origin.input : stemOf(origin);
+    if (!origin.isScene() || methods <= 1)
+      names.push_back(name);
+    else
+      names.push_back(isOneScene ? origin.method : fmt::format("{}, {}", name, origin.method));
+  }
+  return names;
+}
+
+std::string shownName(const std::string& name, const TrajectoryReader& run) {
+  return hasFailed(run) ? fmt::format("{} (unstable at {:.3g} s)", name, run.frameTimes().back()) : name;
+}
+
+std::vector<RunOrigin> originsOf(const std::vector<std::string>& inputs, const PlotOptions& options) {
+  std::vector<RunOrigin> origins;
+  for (const std::string& input : inputs) {
+    RunOrigin origin{input, kPlan};
+    if (!origin.isScene() || options.methods.empty())
+      origins.push_back(origin);
+    else
+      for (const std::string& method : options.methods) origins.push_back({input, method});
+  }
+  if (!options.methods.empty() &&
+      std::none_of(origins.begin(), origins.end(), [](const auto& o) { return o.isScene(); }))
+    throw Error(ErrorKind::usage, "--methods", "found without a scene to simulate: trajectories have their method");
+  return origins;
+}
+
+void requireReference(const std::vector<RunQuantity>& quantities, const PlotOptions& options) {
+  const bool isAsked = std::any_of(quantities.begin(), quantities.end(),
+                                   [](const RunQuantity& each) { return each.kind == QuantityKind::error; });
+  if (isAsked && options.reference.empty())
+    throw Error(ErrorKind::usage, "--quantity", "error needs --reference, the run that errors are measured against");
+  if (!isAsked && !options.reference.empty())
+    throw Error(ErrorKind::usage, "--reference", "found without --quantity error, which is measured against it");
+}
+
+}  // namespace
+
+void plotRuns(const std::vector<std::string>& runs, const std::string& output, const PlotOptions& options, bool quiet) {
+  const ChartFormat format = formatOf(output);
+  const std::vector<RunQuantity> quantities = parseQuantities(options.quantities);
+  requireReference(quantities, options);
+  requireWritableFile(output);
+  for (const std::string& run : runs) requireOtherFile(output, run);
+  const std::vector<RunOrigin> origins = originsOf(runs, options);
+  std::deque<TrajectorySource> sources;  // what is wrong with one shows before any is simulated
+  for (const RunOrigin& origin : origins) sources.emplace_back(origin.input, quiet, optionsOf(origin, options));
+  if (!options.reference.empty())
+    sources.emplace_back(options.reference, quiet, optionsOf({options.reference, kPlan}, options));
+  const std::vector<std::string> names = runNames(origins, options.methods.size());
+  for (const RunQuantity& quantity : quantities)
+    for (std::size_t i = 0; i < sources.size(); ++i)
+      requireQuantity(quantity, {i < names.size() ? names[i] : "the reference", sources[i].scene()});
+  for (TrajectorySource& source : sources) source.simulateUntilItFails();
+
+  std::vector<PlottedRun> shown;
+  for (std::size_t i = 0; i < origins.size(); ++i)
+    shown.push_back({{shownName(names[i], sources[i].reader()), sources[i].scene()}, sources[i].reader()});
+  std::optional<PlottedRun> reference;
+  if (!options.reference.empty())
+    reference.emplace(PlottedRun{{"the reference", sources.back().scene()}, sources.back().reader()});
+  std::vector<RunPanel> panels;
+  for (const RunQuantity& quantity : quantities)
+    panels.push_back(panelOf(quantity, shown, reference ? &*reference : nullptr));
+  drawWithGnuplot(output, format, runChartCommands(shown[0].scene.name, panels, format));
+}
+
+}  // namespace cradle

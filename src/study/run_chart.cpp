@@ -1,0 +1,138 @@
+#include "study/run_chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr int kPanelHeight = 560, kFrameHeight = 130;  // pixels
+constexpr double kMargin = 0.05;                       // of the values' range
+constexpr double kShownOfFailed = 0.9;                 // of a failed run, by time: growing without bound comes after
+
+struct ValueRange {
+  double low = INFINITY, high = -INFINITY;
+
+  void include(double value) {
+    if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
+  }
+  bool isEmpty() const { return !(low <= high); }
+};
+
+/// Of all that is to be seen.
+ValueRange valueRange(const RunPanel& panel) {
+  ValueRange range;
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    const std::vector<double>& values = panel.curves[i].y;
+    const double shown = (panel.hasFailed[i] != 0 ? kShownOfFailed : 1) * static_cast<double>(values.size());
+    for (std::size_t k = 0; k < values.size() && static_cast<double>(k) < shown; ++k) range.include(values[k]);
+  }
+  return range;
+}
+
+std::string panelAxes(const RunPanel& panel) {
+  std::string text = fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\n", quotedForGnuplot(panel.axes.x),
+                                 quotedForGnuplot(panel.axes.y));
+  const ValueRange range = valueRange(panel);
+  if (panel.axes.isLogarithmic)
+    return text + "set logscale y\nset format y '10^{%T}'\nset yrange [*:*]\n" +
+           (range.isEmpty() ? "set yrange [1e-17:1]\n" : "");
+  text += "unset logscale y\nset format y '%g'\n";
+  if (range.isEmpty()) return text + "set yrange [-1:1]\n";
+  const double margin =
+      range.high > range.low ? kMargin * (range.high - range.low) : std::max(1e-3, kMargin * std::abs(range.high));
+  return text + fmt::format("set yrange [{}:{}]\n", range.low - margin, range.high + margin);
+}
+
+/// Names of all curves, in the order in which they first come.
+std::vector<std::string> legendNames(const std::vector<RunPanel>& panels) {
+  std::vector<std::string> names;
+  for (const RunPanel& panel : panels)
+    for (const QuantityCurve& curve : panel.curves)
+      if (std::find(names.begin(), names.end(), curve.name) == names.end()) names.push_back(curve.name);
+  return names;
+}
+
+bool endsAtCross(const RunPanel& panel, std::size_t curve) {
+  const std::vector<double>& values = panel.curves[curve].y;
+  return panel.hasFailed[curve] != 0 && !values.empty() && std::isfinite(values.back());
+}
+
+std::string curveBlocks(const std::vector<RunPanel>& panels) {
+  std::string text;
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    for (std::size_t j = 0; j < panels[i].curves.size(); ++j) {
+      const QuantityCurve& curve = panels[i].curves[j];
+      text += fmt::format("$curve{}_{} << EOD\n", i, j);
+      for (std::size_t k = 0; k < curve.x.size(); ++k)
+        text += std::isfinite(curve.y[k]) ? fmt::format("{} {}\n", curve.x[k], curve.y[k]) : "\n";
+      text += "EOD\n";
+      if (endsAtCross(panels[i], j))
+        text += fmt::format("$end{}_{} << EOD\n{} {}\nEOD\n", i, j, curve.x.back(), curve.y.back());
+    }
+  return text;
+}
+
+/// Curves of one name are one colour; after the last colour they begin again, dashed.
+std::string lineStyle(std::size_t name) {
+  return fmt::format("with lines linewidth 2.5 dashtype {} linecolor rgb '{}'", name / kChartColors.size() + 1,
+                     kChartColors.at(name % kChartColors.size()));
+}
+
+std::string panelCommand(std::size_t number, const RunPanel& panel, const std::vector<std::string>& names,
+                         bool hasLegend) {
+  std::string text;
+  for (std::size_t j = 0; j < panel.curves.size(); ++j) {
+    const auto name = std::find(names.begin(), names.end(), panel.curves[j].name) - names.begin();
+    text += fmt::format("{}$curve{}_{} using 1:2 {} notitle", text.empty() ? "plot " : ", ", number, j,
+                        lineStyle(static_cast<std::size_t>(name)));
+    if (endsAtCross(panel, j))
+      text += fmt::format(
+          ", $end{}_{} using 1:2 with points pointtype 2 pointsize 2*markerScale linewidth 3 linecolor "
+          "rgb '{}' notitle",
+          number, j, kChartColors.at(static_cast<std::size_t>(name) % kChartColors.size()));
+  }
+  for (std::size_t i = 0; i < names.size() && hasLegend; ++i)
+    text += fmt::format(", NaN {} title {} noenhanced", lineStyle(i), quotedForGnuplot(names[i]));
+  return text + "\n";
+}
+
+}  // namespace
+
+RunPanel panelOf(const RunQuantity& quantity, const std::vector<PlottedRun>& runs, const PlottedRun* reference) {
+  RunPanel panel{axesOf(quantity, runs.front().scene), {}, {}};
+  for (const PlottedRun& run : runs)
+    for (QuantityCurve& curve : curvesOf(quantity, run, runs.size() == 1, reference)) {
+      panel.curves.push_back(std::move(curve));
+      panel.hasFailed.push_back(hasFailed(run.frames));
+    }
+  return panel;
+}
+
+std::string runChartCommands(const std::string& title, const std::vector<RunPanel>& panels, ChartFormat format) {
+  const std::vector<std::string> names = legendNames(panels);
+  const int height = kFrameHeight + kPanelHeight * static_cast<int>(panels.size());
+  const double top = 1 - 60.0 / height, panelHeight = (top - 70.0 / height) / static_cast<double>(panels.size());
+  std::string text = fmt::format(
+      "set multiplot\nset border linecolor rgb '#404040'\nset tics nomirror\n"
+      "set grid xtics ytics linecolor rgb '#d0d0d0' linewidth 1 dashtype 1\n"
+      "set label 1 {} at screen 0.5, {} center font ',22' noenhanced\nset lmargin screen 0.09\nset rmargin screen "
+      "0.97\n",
+      quotedForGnuplot(title), 1 - 35.0 / height);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const bool isLast = i + 1 == panels.size();
+    const double above = top - static_cast<double>(i) * panelHeight;
+    text += fmt::format("set tmargin screen {}\nset bmargin screen {}\n", above, above - panelHeight + 75.0 / height);
+    text += isLast && names.size() > 1 ? fmt::format(
+                                             "set key at screen 0.53, {} center bottom horizontal Left "
+                                             "reverse maxrows 2 samplen 2 width 1\n",
+                                             8.0 / height)
+                                       : "unset key\n";
+    text += panelAxes(panels[i]) + panelCommand(i, panels[i], names, isLast && names.size() > 1) + "unset label 1\n";
+  }
+  return curveBlocks(panels) + drawingCommands(text + "unset multiplot\n", format, height);
+}
+
+}  // namespace cradle
