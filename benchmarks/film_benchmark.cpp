@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "commands/film.h"
 #include "commands/film_view.h"
-#include "commands/pictures.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "image/video.h"

@@ -17,6 +17,7 @@
 #include "commands/chart_stability.h"
 #include "commands/compare.h"
 #include "commands/export_trajectory.h"
+#include "commands/film.h"
 #include "commands/inspect_mesh.h"
 #include "commands/pictures.h"
 #include "commands/plan_scene.h"
@@ -45,7 +46,7 @@ struct CommandLine {
   CompareOptions comparison;
   PlotOptions plot;
   double scale = 1;
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, sideBySide = false;
   std::function<void()> command;
 };
 
@@ -168,6 +169,13 @@ void addPlot(CLI::App& app, CommandLine& line) {
   addAssetRoot(plot, line.simulation.scene.assetRoot);
 }
 
+/// Of a command that takes more with an option alone.
+void requireOneInput(const std::vector<std::string>& inputs) {
+  if (inputs.size() == 1) return;
+  throw Error(ErrorKind::usage, inputs[1],
+              "is one name too many for video; several films beside each other are --side-by-side");
+}
+
 void addPictures(CLI::App& app, CommandLine& line) {
   auto* render = addCommand(app, line, "render", "Draw the frames of a scene or trajectory as PNG files",
                             "cradle render scenes/newtons_cradle.json -o frames --frames 0:60",
@@ -184,14 +192,22 @@ void addPictures(CLI::App& app, CommandLine& line) {
       addCommand(app, line, "encode", "Make a film of a folder of frames", "cradle encode frames -o film.mp4",
                  [&] { encodeFrames(line.input, line.output, line.pictures.framesPerSecond, line.quiet); });
   encode->add_option("folder", line.input, "folder with frame_000000.png, ...")->required();
-  addOutput(encode, line, "film to write (.mp4)");
+  addOutput(encode, line, "film to write (.mp4, .mov, .mkv, .gif)");
   encode->add_option("--frames-per-second", line.pictures.framesPerSecond, "of the film")->capture_default_str();
 
   auto* video = addCommand(app, line, "video", "Make a film of a scene or trajectory",
-                           "cradle video scenes/newtons_cradle.json -o cradle.mp4",
-                           [&] { makeFilm(line.input, line.output, line.pictures, line.quiet); });
-  video->add_option("input", line.input, "scene or trajectory file")->required();
-  addOutput(video, line, "film to write (.mp4)");
+                           "cradle video scenes/newtons_cradle.json -o cradle.mp4\n"
+                           "  cradle video euler.sqlite rk4.sqlite -o both.mp4 --side-by-side",
+                           [&] {
+                             if (line.sideBySide)
+                               return makeSideBySideFilm(line.scenes, line.output, line.pictures, line.quiet);
+                             requireOneInput(line.scenes);
+                             makeFilm(line.scenes[0], line.output, line.pictures, line.quiet);
+                           });
+  video->add_option("input", line.scenes, "scene or trajectory file")->required();
+  addOutput(video, line, "film to write (.mp4, .mov, .mkv, .gif)");
+  video->add_flag("--side-by-side", line.sideBySide,
+                  "two to four scenes or trajectories beside each other, each below its method; --size is that of one");
   addPictureOptions(video, line);
 }
 

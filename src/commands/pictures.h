@@ -24,7 +24,4 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
 /// `cradle encode FOLDER -o FILE.mp4`.
 void encodeFrames(const std::string& folder, const std::string& film, double framesPerSecond, bool quiet);
 
-/// `cradle video SCENE|TRAJECTORY -o FILE.mp4`.
-void makeFilm(const std::string& input, const std::string& film, const PictureOptions& options, bool quiet);
-
 }  // namespace cradle

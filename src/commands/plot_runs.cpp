@@ -63,7 +63,7 @@ std::vector<std::string> runNames(const std::vector<RunOrigin>& origins, std::si
 }
 
 std::string shownName(const std::string& name, const TrajectoryReader& run) {
-  return hasFailed(run) ? fmt::format("{} (unstable at {:.3g} s)", name, run.frameTimes().back()) : name;
+  return run.hasFailed() ? fmt::format("{} (unstable at {:.3g} s)", name, run.frameTimes().back()) : name;
 }
 
 std::vector<RunOrigin> originsOf(const std::vector<std::string>& inputs, const PlotOptions& options) {

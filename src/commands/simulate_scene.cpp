@@ -185,7 +185,7 @@ std::optional<std::string> simulateUntilItFails(TrajectoryWriter& writer, const 
     if (error.kind() != ErrorKind::unstable || !writer.hasFrame()) throw;
     stopwatch.stop();
     writer.finish({stopwatch.seconds(), world.evaluations(), world.correctionCounts(),
-                   fmt::format("the run failed: {}", error.what())});
+                   fmt::format("{}{}", kFailedRun, error.what())});
     return error.what();
   }
 }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -30,11 +31,18 @@ std::string muxerFor(const std::string& path) {
   if (extension == ".mp4" || extension == ".m4v") return "mp4";
   if (extension == ".mov") return "mov";
   if (extension == ".mkv") return "matroska";
-  throw Error(ErrorKind::usage, path, "the name of a film ends in .mp4, .mov or .mkv");
+  if (extension == ".gif") return "gif";
+  throw Error(ErrorKind::usage, path, "the name of a film ends in .mp4, .mov, .mkv or .gif");
 }
 
 int roundedUpToEven(int size) {
   return size + size % 2;
+}
+
+/// From picture to picture that the film takes: browsers show those of a .gif for longer than 0.02 s.
+long strideOf(const std::string& muxer, const VideoFormat& format) {
+  constexpr double kMaxGifRate = 50;  // 1/s
+  return muxer == "gif" ? std::lround(std::ceil(format.framesPerSecond / kMaxGifRate)) : 1;
 }
 
 std::vector<std::string> ffmpegCommand(const std::string& part, const std::string& muxer, const VideoFormat& format) {
@@ -44,7 +52,13 @@ std::vector<std::string> ffmpegCommand(const std::string& part, const std::strin
     command.insert(command.end(), more.begin(), more.end());
   };
   append({"-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", size});
-  append({"-framerate", fmt::format("{}", format.framesPerSecond), "-i", "pipe:0"});
+  const double rate = format.framesPerSecond / static_cast<double>(strideOf(muxer, format));
+  append({"-framerate", fmt::format("{}", rate), "-i", "pipe:0"});
+  if (muxer == "gif") {
+    append({"-vf", "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=bayer:bayer_scale=4",
+            "-threads", "1", "-fflags", "+bitexact", "-f", "gif", "file:" + part});
+    return command;
+  }
   append({"-vf",
           "scale=in_range=full:out_range=limited:out_color_matrix=bt709:flags=bicubic+accurate_rnd+full_chroma_int+"
           "bitexact,format=yuv420p"});
@@ -106,9 +120,14 @@ Image paddedToEven(const Image& image) {
 
 }  // namespace
 
+void requireFilmName(const std::string& path) {
+  muxerFor(path);
+}
+
 VideoEncoder::VideoEncoder(std::string path, const VideoFormat& format) : path_(std::move(path)), format_(format) {
   CRADLE_CHECK(format.width > 0 && format.height > 0 && format.framesPerSecond > 0);
   const std::string muxer = muxerFor(path_);
+  stride_ = strideOf(muxer, format_);
   lock_.emplace(path_);  // ffmpeg writes into that file
   ffmpeg_ = std::make_unique<ChildProcess>(ffmpegCommand(partPath(path_), muxer, format_));
 }
@@ -119,6 +138,7 @@ VideoEncoder::~VideoEncoder() {
 
 void VideoEncoder::add(const Image& image) {
   CRADLE_CHECK(image.width == format_.width && image.height == format_.height);
+  if (given_++ % stride_ != 0) return;
   const bool isEven = image.width % 2 == 0 && image.height % 2 == 0;
   const Image padded = isEven ? Image() : paddedToEven(image);
   const auto& pixels = isEven ? image.pixels : padded.pixels;

@@ -17,13 +17,17 @@ struct VideoFormat {
   double framesPerSecond = 0;  // > 0
 };
 
+/// Throws Error(usage) unless `path` ends as the name of a film does: .mp4, .m4v, .mov, .mkv or .gif.
+void requireFilmName(const std::string& path);
+
 /// A film in the making: pictures go through a pipe to ffmpeg, which writes H.264 (bt709, 4:2:0) to `path`.part;
-/// finish() gives it its name. Same pictures, same bytes. An odd width or height grows by one pixel that repeats the
+/// finish() gives it its name. A .gif has a palette for each picture, and 50 of them in a second at most: of more, each
+/// second, third, ... one. Same pictures, same bytes. An odd width or height grows by one pixel that repeats the
 /// edge, for H.264 halves the colours' resolution. If the object goes before finish(), ffmpeg is ended and nothing is
 /// left behind.
 class VideoEncoder {
  public:
-  /// `path` ends in .mp4, .mov or .mkv. Throws Error(usage) for another name, Error(output) if no file can be put
+  /// Throws Error(usage) for another name, Error(output) if no file can be put
   /// there, Error(encoder) if ffmpeg cannot be started.
   VideoEncoder(std::string path, const VideoFormat& format);
   ~VideoEncoder();
@@ -44,7 +48,8 @@ class VideoEncoder {
   VideoFormat format_;
   std::optional<PartLock> lock_;
   std::unique_ptr<ChildProcess> ffmpeg_;
-  long frames_ = 0;
+  long stride_ = 1;  // from picture to picture that the film takes
+  long given_ = 0, frames_ = 0;
   bool finished_ = false;
 };
 

@@ -108,7 +108,10 @@ void FilmOverlay::readFilm(const FilmRecord& film) {
     addToPlot(frame);
     countHidden(frame, {camera_.at(frame), film.width, film.height}, hidden);
   }
-  plot_.corner = kCorners[static_cast<std::size_t>(std::min_element(hidden.begin(), hidden.end()) - hidden.begin())];
+  const bool hasLowerText = std::any_of(scene_.captions.begin(), scene_.captions.end(),
+                                        [](const Caption& caption) { return caption.body == kWorld; });
+  const auto corners = hasLowerText ? hidden.begin() + 1 : hidden.end();  // the upper one first
+  plot_.corner = kCorners[static_cast<std::size_t>(std::min_element(hidden.begin(), corners) - hidden.begin())];
   if (choice_.plot != PlotKind::energy) return;
   // A potential's zero means nothing: from its lowest, so that curves of one size share the plot.
   auto& potential = plot_.curves[1].values;

@@ -13,6 +13,7 @@
 #include "scene/json_document.h"
 #include "scene/parse_bodies.h"
 #include "scene/parse_camera.h"
+#include "scene/parse_captions.h"
 #include "scene/parse_links.h"
 #include "scene/parse_materials.h"
 #include "scene/parse_pushes.h"
@@ -39,6 +40,7 @@ SceneDraft parseText(const JsonValue& document, FaultList& faults) {
   parseLinks(root, draft);
   parsePushes(root, draft);
   parseCamera(root, draft);
+  parseCaptions(root, draft);
   root.rejectUnknownKeys();
   completeLinks(draft, faults);
   return draft;

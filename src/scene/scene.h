@@ -234,6 +234,19 @@ struct Light {
 /// The surroundings of a picture: a light day or the dark.
 enum class Look { light, dark };
 
+/// Words on the pictures of a film.
+struct Caption {
+  std::string text;
+  double from = 0, to = std::numeric_limits<double>::infinity();  // s of the scene; half-open
+  int body = kWorld;                                              // the one they go with; kWorld: none
+};
+
+/// A picture of words that a film begins with.
+struct TitleCard {
+  std::string title, subtitle;
+  double seconds = 3;  // of the film
+};
+
 struct Scene {
   std::string path, text;  // the file itself
   std::string name, description;
@@ -261,6 +274,8 @@ struct Scene {
   CameraMotion cameraMotion;
   std::vector<Light> lights;  // at least one
   Look look = Look::light;
+  std::vector<Caption> captions;
+  std::optional<TitleCard> titleCard;
 };
 
 /// Calls visit(links) with the joints of each kind of a scene: those that join two points.

@@ -106,7 +106,7 @@ RunPanel panelOf(const RunQuantity& quantity, const std::vector<PlottedRun>& run
   for (const PlottedRun& run : runs)
     for (QuantityCurve& curve : curvesOf(quantity, run, runs.size() == 1, reference)) {
       panel.curves.push_back(std::move(curve));
-      panel.hasFailed.push_back(hasFailed(run.frames));
+      panel.hasFailed.push_back(run.frames.hasFailed());
     }
   return panel;
 }

@@ -270,11 +270,6 @@ void requireQuantity(const RunQuantity& quantity, const RunScene& run) {
   if (!isAngle && !quantity.name.empty()) stateNamed(quantity.name, run);
 }
 
-bool hasFailed(const TrajectoryReader& frames) {
-  const auto promise = frames.meta().find("promise");
-  return promise != frames.meta().end() && promise->second.starts_with("the run failed");
-}
-
 QuantityAxes axesOf(const RunQuantity& quantity, const Scene& scene) {
   const std::optional<std::size_t> joint = jointNamed(quantity.name, scene);
   const bool isLength = joint && *joint >= scene.hinges.size();

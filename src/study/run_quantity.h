@@ -34,9 +34,6 @@ struct PlottedRun : RunScene {
   const TrajectoryReader& frames;
 };
 
-/// Whether the run became unstable before its end (`simulate --until-it-fails`).
-bool hasFailed(const TrajectoryReader& frames);
-
 /// One line of a chart. Values are in SI units, and NaN where there is none.
 struct QuantityCurve {
   std::string name;

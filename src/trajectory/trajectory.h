@@ -105,6 +105,9 @@ struct TrajectoryHeader {
   std::vector<JointRecord> joints = {};  // hinges, then sliders
 };
 
+/// Begins RunCost::promise of a run that became unstable and was finished then; the cause follows.
+constexpr const char* kFailedRun = "the run failed: ";
+
 /// What is known after the last step.
 struct RunCost {
   double cpuSeconds = 0;                         // integration alone

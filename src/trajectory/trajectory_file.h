@@ -96,6 +96,8 @@ class TrajectoryReader {
   /// Of the frames that are there: reads all of them, and throws where the file says another hash.
   std::string hashOfFrames() const;
   bool isFinished() const { return !stateHash().empty(); }
+  /// Whether the run became unstable before its end, and was finished then.
+  bool hasFailed() const;
   /// Zero if the run was not finished.
   RunCost cost() const;
 

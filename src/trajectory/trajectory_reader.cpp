@@ -416,6 +416,11 @@ std::string TrajectoryReader::hashOfFrames() const {
   return hash.hex();
 }
 
+bool TrajectoryReader::hasFailed() const {
+  const auto promise = meta_.find("promise");
+  return promise != meta_.end() && promise->second.starts_with(kFailedRun);
+}
+
 RunCost TrajectoryReader::cost() const {
   Statement query = session_->database->prepare(
       "SELECT (SELECT value FROM meta WHERE key = 'cpuSeconds'), (SELECT value FROM meta WHERE key = 'evaluations')");

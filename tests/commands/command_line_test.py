@@ -760,6 +760,29 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(result.returncode, 9)
         self.assertIn("frame_000005.png: missing", result.stdout)
 
+    def test_gif_and_title_card(self):
+        path = self.write("t.json", scene(titleCard={"title": "Balls", "seconds": 0.5}))
+        for name, frames in (("f.mp4", 36), ("f.gif", 18)):  # 60 pictures a second are too many for a .gif
+            self.assertEqual(cradle("video", path, "-o", self.path(name)).returncode, 0)
+            self.assertEqual(film_frames(self.path(name)), f"64,36,{frames}")
+        again = self.path("again.gif")
+        self.assertEqual(cradle("video", path, "-o", again).returncode, 0)
+        self.assertEqual(content(again), content(self.path("f.gif")))
+
+    def test_films_side_by_side(self):
+        slow = self.write("slow.json", scene(duration=0.05, method={"name": "rk4", "timeStep": 0.01}))
+        film = self.path("f.mp4")
+        result = cradle("video", self.scene, slow, "--side-by-side", "-o", film, "--size", "64x40")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(film_frames(film), "128,44,6")  # a strip of a tenth above each
+        there = self.listing()
+        other = self.write("other.json", scene(output={"framesPerSecond": 30, "width": 64, "height": 36}))
+        there = self.listing()
+        for words, arguments in (([other, "30 frames a second", "need the same"], [self.scene, other, "--side-by-side"]),
+                                 (["--side-by-side", "found 1"], [self.scene, "--side-by-side"]),
+                                 ([slow, "--side-by-side"], [self.scene, slow])):
+            self.refuses(2, words, "video", *arguments, "-o", self.path("x.mp4"), leaves=there)
+
     def test_video_has_all_frames(self):
         self.assertEqual(cradle("video", self.scene, "-o", self.path("f.mp4")).returncode, 0)
         self.assertEqual(film_frames(self.path("f.mp4")), "64,36,6")

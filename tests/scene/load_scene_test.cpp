@@ -51,6 +51,16 @@ TEST_F(EveryKey, CameraAndLightsAreThoseOfTheFile) {
   EXPECT_EQ(scene_.lights[0].color, Vec3f(1, 128.0F / 255, 0));
   EXPECT_EQ(scene_.lights[0].intensity, 2);
   EXPECT_EQ(scene_.look, Look::dark);
+  ASSERT_EQ(scene_.captions.size(), 2u);
+  EXPECT_EQ(scene_.captions[0].text, "Look here");
+  EXPECT_EQ(scene_.captions[0].from, 0.5);
+  EXPECT_EQ(scene_.captions[0].to, 1.5);
+  EXPECT_EQ(scene_.bodies[static_cast<std::size_t>(scene_.captions[0].body)].name, "ball");
+  EXPECT_EQ(scene_.captions[1].body, kWorld);
+  EXPECT_EQ(scene_.captions[1].to, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(scene_.titleCard->title, "Every key");
+  EXPECT_EQ(scene_.titleCard->subtitle, "and some more");
+  EXPECT_EQ(scene_.titleCard->seconds, 2);
 }
 
 TEST_F(EveryKey, MaterialsFollowTheUnnamedOne) {

@@ -1,0 +1,79 @@
+#include "commands/film_drawer.h"
+
+#include <fmt/format.h>
+
+#include <future>
+
+#include "commands/drawing_memory.h"
+#include "commands/number_pair.h"
+#include "core/error.h"
+#include "core/interruption.h"
+#include "overlay/captions.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kLargestSize = 16384;  // pixels; as in scene files
+
+PictureSize parseSize(const std::optional<std::string>& text, const Scene& scene) {
+  if (!text) return {scene.output.width, scene.output.height};
+  const auto size = parsePair(*text, 'x');
+  if (!size)
+    throw Error(ErrorKind::usage, "--size", fmt::format("found \"{}\"; allowed is WIDTHxHEIGHT, as 1280x720", *text));
+  for (const long edge : {size->first, size->second})
+    if (edge < 1 || edge > kLargestSize)
+      throw Error(ErrorKind::usage, "--size", fmt::format("found {}; allowed are 1 to {} pixels", edge, kLargestSize));
+  return {static_cast<int>(size->first), static_cast<int>(size->second)};
+}
+
+}  // namespace
+
+PictureOrder::PictureOrder(const PictureOptions& options, const Scene& scene)
+    : size(parseSize(options.size, scene)), shaders(options.shaders.value_or("")) {
+  requireDrawingMemory(size.width, size.height);
+  if (options.overlay) overlays = parseOverlays(*options.overlay);
+  if (overlays && overlays->plot == PlotKind::height) plottedBody(*overlays, scene);
+}
+
+FilmDrawer::FilmDrawer(TrajectorySource& trajectory, const PictureOrder& order, const std::optional<View>& view)
+    : source_(trajectory),
+      view_(view ? *view : viewOf(source_, order.size.width, order.size.height)),
+      camera_(cameraOf(source_, view_)),
+      renderer_(source_.scene(), view_, order.size.width, order.size.height, order.shaders) {
+  if (source_.isWhole() && source_.scene().camera) camera_.at(source_.frameAt(source_.frameCount() - 1));
+  if (!order.overlays) return;
+  const FilmRecord film{source_.scene(),
+                        view_,
+                        order.size.width,
+                        order.size.height,
+                        [this](long number) { return source_.frameAt(number); },
+                        source_.frameCount(),
+                        source_.isWhole() ? source_.reader().events() : std::vector<Event>()};
+  overlay_.emplace(film, *order.overlays);
+}
+
+Image FilmDrawer::draw(long number) {
+  const Frame frame = source_.frameAt(number);
+  source_.forgetBefore(number);
+  const Camera camera = camera_.at(frame);
+  Image image = renderer_.render(frame, camera);
+  if (overlay_) overlay_->draw(frame, image);
+  if (!source_.scene().captions.empty())
+    drawCaptions(source_.scene(), frame, {camera, image.width, image.height}, image);
+  return image;
+}
+
+void drawFrames(long first, long end, Progress& progress, const std::function<Image(long frame)>& draw,
+                const std::function<void(long frame, const Image& picture)>& take) {
+  std::future<void> taken;
+  for (long frame = first; frame < end; ++frame) {
+    throwIfInterrupted();
+    Image image = draw(frame);
+    if (taken.valid()) taken.get();
+    taken = std::async(std::launch::async, [&take, frame, picture = std::move(image)] { take(frame, picture); });
+    progress.update(frame - first + 1);
+  }
+  taken.get();
+}
+
+}  // namespace cradle

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "commands/film_view.h"
+#include "commands/pictures.h"
+#include "commands/trajectory_source.h"
+#include "core/progress.h"
+#include "image/image.h"
+#include "overlay/film_overlay.h"
+#include "render/renderer.h"
+
+namespace cradle {
+
+/// What the command line says of pictures. Whatever is wrong with it shows before anything is simulated.
+struct PictureOrder {
+  /// Throws Error(usage), or Error(limit) where there is too little memory to draw.
+  PictureOrder(const PictureOptions& options, const Scene& scene);
+
+  PictureSize size;
+  std::string shaders;
+  std::optional<OverlayChoice> overlays;
+};
+
+/// What draws the frames of a film: whatever is wrong with its shaders, and with its camera as far as its way is known,
+/// shows before a picture is made.
+class FilmDrawer {
+ public:
+  /// `trajectory` must outlive this object. Without a `view`, that of the film.
+  FilmDrawer(TrajectorySource& trajectory, const PictureOrder& order, const std::optional<View>& view = {});
+
+  /// The picture of a frame. Frames before are not to be asked for again.
+  Image draw(long number);
+
+ private:
+  TrajectorySource& source_;
+  View view_;
+  FilmCamera camera_;
+  Renderer renderer_;
+  std::optional<FilmOverlay> overlay_;
+};
+
+/// Draws frames from `first` on to before `end` in order, and hands each picture on in a thread beside the drawing of
+/// the next one.
+void drawFrames(long first, long end, Progress& progress, const std::function<Image(long frame)>& draw,
+                const std::function<void(long frame, const Image& picture)>& take);
+
+}  // namespace cradle
