@@ -15,6 +15,7 @@
 #include "math/rotation.h"
 #include "render/body_place.h"
 #include "render/link_items.h"
+#include "render/upright.h"
 #include "scene/count_bodies.h"
 
 namespace cradle {
@@ -53,7 +54,8 @@ class GlbExport {
   GlbExport(const TrajectoryReader& reader, const std::string& path)
       : reader_(reader),
         path_(path),
-        scene_(sceneOf(reader)),
+        uprightFromWorld_(uprightFromWorld(sceneOf(reader))),
+        scene_(turned(uprightFromWorld_, sceneOf(reader))),
         file_(scene_.name),
         meshes_(reader.header(), scene_, file_) {}
 
@@ -61,6 +63,7 @@ class GlbExport {
   void write(PartFile& file) { file_.write(path_, file); }
 
  private:
+  Frame readFrame(long number) const { return turned(uprightFromWorld_, reader_.readFrame(number)); }
   std::size_t frameCount() const { return reader_.frameTimes().size(); }
   void requireFits() const;
   void addTimes();
@@ -76,6 +79,7 @@ class GlbExport {
 
   const TrajectoryReader& reader_;
   const std::string path_;
+  const Quat uprightFromWorld_;  // the y axis of glTF is up
   const Scene scene_;
   GlbFile file_;
   GlbMeshes meshes_;
@@ -209,7 +213,7 @@ void GlbExport::addPlanes() {
 void GlbExport::build(bool quiet) {
   requireFits();
   addTimes();
-  addBodies(placeBodies(scene_, reader_.readFrame(0)));
+  addBodies(placeBodies(scene_, readFrame(0)));
   linkRadius_ = linkRadius();
   addLinks(scene_.springs, "spring", kDarkSteel);
   addLinks(scene_.rods, "rod", kSteel);
@@ -220,7 +224,7 @@ void GlbExport::build(bool quiet) {
   Progress progress("Exporting", "frames", reader_.frameCount(), quiet);
   for (long number = 0; number < reader_.frameCount(); ++number) {
     throwIfInterrupted();
-    addFrame(reader_.readFrame(number));
+    addFrame(readFrame(number));
     progress.update(number + 1);
   }
   joints_->addRails();

@@ -39,27 +39,27 @@ FilmDrawer::FilmDrawer(TrajectorySource& trajectory, const PictureOrder& order, 
     : source_(trajectory),
       view_(view ? *view : viewOf(source_, order.size.width, order.size.height)),
       camera_(cameraOf(source_, view_)),
-      renderer_(source_.scene(), view_, order.size.width, order.size.height, order.shaders) {
-  if (source_.isWhole() && source_.scene().camera) camera_.at(source_.frameAt(source_.frameCount() - 1));
+      renderer_(source_.drawnScene(), view_, order.size.width, order.size.height, order.shaders) {
+  if (source_.isWhole() && source_.drawnScene().camera) camera_.at(source_.drawnFrameAt(source_.frameCount() - 1));
   if (!order.overlays) return;
-  const FilmRecord film{source_.scene(),
+  const FilmRecord film{source_.drawnScene(),
                         view_,
                         order.size.width,
                         order.size.height,
-                        [this](long number) { return source_.frameAt(number); },
+                        [this](long number) { return source_.drawnFrameAt(number); },
                         source_.frameCount(),
-                        source_.isWhole() ? source_.reader().events() : std::vector<Event>()};
+                        source_.isWhole() ? source_.drawnEvents() : std::vector<Event>()};
   overlay_.emplace(film, *order.overlays);
 }
 
 Image FilmDrawer::draw(long number) {
-  const Frame frame = source_.frameAt(number);
+  const Frame frame = source_.drawnFrameAt(number);
   source_.forgetBefore(number);
   const Camera camera = camera_.at(frame);
   Image image = renderer_.render(frame, camera);
   if (overlay_) overlay_->draw(frame, image);
-  if (!source_.scene().captions.empty())
-    drawCaptions(source_.scene(), frame, {camera, image.width, image.height}, image);
+  if (!source_.drawnScene().captions.empty())
+    drawCaptions(source_.drawnScene(), frame, {camera, image.width, image.height}, image);
   return image;
 }
 

@@ -10,12 +10,12 @@ constexpr double kMaxWaiting = 1e6;  // states of bodies, 0.1 GB: of the frames 
 }  // namespace
 
 View viewOf(TrajectorySource& source, int width, int height) {
-  std::vector<ShownPush> pushes = findShownPushes(source.scene(), source.pushEvents(), [&source](long frame) {
-    return source.frameAt(std::min(frame, source.frameCount() - 1));
+  std::vector<ShownPush> pushes = findShownPushes(source.drawnScene(), source.drawnPushEvents(), [&source](long frame) {
+    return source.drawnFrameAt(std::min(frame, source.frameCount() - 1));
   });
-  Framing framing(source.scene(), width, height, std::move(pushes));
+  Framing framing(source.drawnScene(), width, height, std::move(pushes));
   const long frames = source.scene().camera ? 1 : source.frameCount();
-  for (long number = 0; number < frames; ++number) framing.add(source.frameAt(number));
+  for (long number = 0; number < frames; ++number) framing.add(source.drawnFrameAt(number));
   return framing.view();
 }
 
@@ -27,7 +27,7 @@ bool isSeenFromTheStart(const Scene& scene) {
 }
 
 FilmCamera cameraOf(TrajectorySource& source, const View& view) {
-  return {source.scene(), view.camera, [&source](long number) { return source.frameAt(number); }};
+  return {source.drawnScene(), view.camera, [&source](long number) { return source.drawnFrameAt(number); }};
 }
 
 }  // namespace cradle

@@ -6,6 +6,7 @@
 
 #include "commands/simulate_scene.h"
 #include "core/error.h"
+#include "render/upright.h"
 #include "scene/load_scene.h"
 #include "simulate/assembly.h"
 #include "simulate/simulate.h"
@@ -72,15 +73,40 @@ TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool qu
     open(TrajectoryReader(sceneOrTrajectory));
     return;
   }
-  scene_ = loadSceneAndWarn(sceneOrTrajectory, options);
+  setScene(loadSceneAndWarn(sceneOrTrajectory, options));
   refuseUnsupported(scene_);
   frameCount_ = lastFrame(scene_) + 1;
 }
 
 void TrajectorySource::open(TrajectoryReader trajectory) {
   reader_.emplace(std::move(trajectory));
-  scene_ = sceneOf(*reader_);
+  setScene(sceneOf(*reader_));
   frameCount_ = reader_->frameCount();
+}
+
+void TrajectorySource::setScene(Scene scene) {
+  scene_ = std::move(scene);
+  if (upOf(scene_) == Vec3::UnitY()) return;
+  const Quat turn = uprightFromWorld(scene_);
+  upright_ = {turn, turned(turn, scene_)};
+}
+
+Frame TrajectorySource::drawnFrameAt(long number) {
+  return upright_ ? turned(upright_->fromWorld, frameAt(number)) : frameAt(number);
+}
+
+std::vector<Event> TrajectorySource::drawn(std::vector<Event> events) const {
+  if (!upright_) return events;
+  for (Event& event : events) event = turned(upright_->fromWorld, event);
+  return events;
+}
+
+std::vector<Event> TrajectorySource::drawnPushEvents() {
+  return drawn(pushEvents());
+}
+
+std::vector<Event> TrajectorySource::drawnEvents() const {
+  return drawn(reader_->events());
 }
 
 /// Calls simulateInto(writer, world).

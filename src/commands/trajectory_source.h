@@ -29,6 +29,12 @@ class TrajectorySource {
   /// The scene as the trajectory holds it: its text, with the meshes of the file.
   const Scene& scene() const { return scene_; }
 
+  /// Scene, frames and events as pictures show them: turned so that y is up.
+  const Scene& drawnScene() const { return upright_ ? upright_->scene : scene_; }
+  Frame drawnFrameAt(long number);
+  std::vector<Event> drawnPushEvents();
+  std::vector<Event> drawnEvents() const;  // of a whole trajectory
+
   /// Known before the simulation, too.
   long frameCount() const { return frameCount_; }
 
@@ -63,13 +69,20 @@ class TrajectorySource {
   long pictureCount() const;
 
  private:
+  struct Upright {
+    Quat fromWorld;
+    Scene scene;
+  };
   void open(TrajectoryReader trajectory);
+  void setScene(Scene scene);
+  std::vector<Event> drawn(std::vector<Event> events) const;
   template <class Simulate>
   void simulateBy(const Simulate& simulateInto);
 
   bool quiet_;
   std::optional<TrajectoryReader> reader_;
   Scene scene_;
+  std::optional<Upright> upright_;  // if gravity is along another axis
   long frameCount_ = 0;
   std::function<void(const std::string&)> warn_;
   std::function<void(double time)> reached_;

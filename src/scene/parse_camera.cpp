@@ -114,7 +114,7 @@ void parseCamera(ObjectReader& root, SceneDraft& draft) {
   camera.where = faults.where(field->place(), field->pointer);
   ObjectReader reader(*field, faults);
   camera.position = reader.vector("position", kCoordinates, "m", camera.position);
-  camera.up = reader.direction("up", camera.up);
+  camera.up = reader.direction("up", upOf(draft.scene));
   camera.verticalFieldOfView =
       kRadiansPerDegree * reader.number("verticalFieldOfViewDegrees", kFieldsOfView, "degrees", 40);
   parseMotion(reader, draft);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "math/rotation.h"
 #include "scene/named_accuracy.h"
 
 namespace cradle {
@@ -61,8 +62,15 @@ Output parseOutput(const Field& field, FaultList& faults) {
   return output;
 }
 
-Light parseLight(const Field& field, FaultList& faults) {
+/// The usual one comes from above.
+Light usualLight(const Scene& scene) {
   Light light;
+  light.direction = rotationBetween(Vec3::UnitY(), upOf(scene)) * light.direction;
+  return light;
+}
+
+Light parseLight(const Field& field, const Scene& scene, FaultList& faults) {
+  Light light = usualLight(scene);
   ObjectReader reader(field, faults);
   light.direction = reader.direction("direction", light.direction);
   light.color = reader.color("color").value_or(light.color);
@@ -74,10 +82,11 @@ Light parseLight(const Field& field, FaultList& faults) {
 void parseLights(ObjectReader& root, Scene& scene) {
   const auto field = root.find("lights");
   if (!field) {
-    scene.lights = {Light{}};
+    scene.lights = {usualLight(scene)};
     return;
   }
-  for (const Field& item : readItems(*field, root.faults())) scene.lights.push_back(parseLight(item, root.faults()));
+  for (const Field& item : readItems(*field, root.faults()))
+    scene.lights.push_back(parseLight(item, scene, root.faults()));
   if (const auto* array = std::get_if<JsonValue::Array>(&field->value->content); array != nullptr && array->empty()) {
     addFault(root.faults(), *field, "lights is empty; at least one is needed; leave the key out for the usual one");
   }

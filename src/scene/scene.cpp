@@ -12,6 +12,15 @@ bool looksAlongUp(const Camera& camera) {
   return towards.cross(camera.up).norm() <= kMinAngle * towards.norm();
 }
 
+Vec3 upOf(const Scene& scene) {
+  const Vec3& gravity = scene.gravity;
+  for (const int axis : {0, 1, 2}) {
+    const Vec3 up = Vec3::Unit(axis) * (gravity[axis] < 0 ? 1 : -1);
+    if (gravity[axis] != 0 && (gravity.array() != 0).count() == 1) return up;
+  }
+  return Vec3::UnitY();
+}
+
 long lastFrame(const Scene& scene) {
   const Output& output = scene.output;
   // A duration that is a whole number of frames must not lose its last one to rounding.

@@ -298,6 +298,10 @@ using LinkOf = typename std::decay_t<Links>::value_type;
 /// Whether a camera looks along its own `up` (or its target is its position), so that no side of the picture is up.
 bool looksAlongUp(const Camera& camera);
 
+/// The axis of the world against gravity: the one that is up in pictures, and along which heights are. Y without
+/// gravity, or if it is along no axis.
+Vec3 upOf(const Scene& scene);
+
 /// N: a trajectory has frames 0..N, a film pictures 0..N-1 (at least one).
 long lastFrame(const Scene& scene);
 

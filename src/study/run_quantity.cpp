@@ -197,7 +197,7 @@ QuantityCurve heightCurve(const RunQuantity& quantity, const PlottedRun& run) {
   const std::size_t state = stateNamed(quantity.name, run);
   forEachFrame(run, [&](const Frame& frame) {
     curve.x.push_back(frame.time);
-    curve.y.push_back(frame.states[state].position.y());
+    curve.y.push_back(frame.states[state].position.dot(upOf(run.scene)));
   });
   return curve;
 }

@@ -769,6 +769,30 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(cradle("video", path, "-o", again).returncode, 0)
         self.assertEqual(content(again), content(self.path("f.gif")))
 
+    def test_the_axis_against_gravity_is_up(self):
+        """A scene that is turned as a whole, gravity too, has the same pictures, heights and models."""
+        turns = {"y": lambda x, y, z: [x, y, z], "z": lambda x, y, z: [x, -z, y], "-x": lambda x, y, z: [-y, x, z]}
+        heights = {}
+        for name, turn in turns.items():
+            path = self.write(name + ".json", scene(
+                gravity=turn(0, -9.81, 0), duration=0.2, output={"framesPerSecond": 10, "width": 160, "height": 120},
+                bodies=[{"name": "floor", "shape": {"plane": {"normal": turn(0, 1, 0)}}, "motion": "static"},
+                        {"name": "ball", "shape": {"sphere": {"radius": 0.2}}, "position": turn(0, 1, 0), "linearVelocity": turn(1, 0, 0.5)},
+                        {"name": "left", "shape": {"sphere": {"radius": 0.1}}, "position": turn(-1, 0.1, 0)}],
+                rods=[{"bodyA": "left", "anchorA": [0, 0, 0], "anchorB": turn(-1, 1, 0)}],
+                pushes=[{"body": "ball", "ray": {"origin": turn(0, 1, 3), "direction": turn(0, 0, -1)}, "force": turn(0, 0, -3), "start": 0.1, "duration": 0.1}]))
+            self.assertEqual(cradle("render", path, "-o", self.path(name), "--overlay", "velocities,plot=height:ball").returncode, 0)
+            run = self.path(name + ".sqlite")
+            self.assertEqual(cradle("simulate", path, "-o", run).returncode, 0)
+            self.assertEqual(cradle("export", run, "-o", self.path(name + ".glb")).returncode, 0)
+            model = json.loads(content(self.path(name + ".glb"))[20:].split(b"\0")[0].decode(errors="ignore").rsplit("}", 1)[0] + "}")
+            heights[name] = [node["translation"] for node in model["nodes"] if node.get("name") == "ball"][0]
+        for name in ("z", "-x"):
+            result = cradle("compare", self.path("y"), self.path(name))
+            self.assertEqual(result.returncode, 0, result.stdout)
+            for a, b in zip(heights["y"], heights[name]):
+                self.assertAlmostEqual(a, b, places=6)
+
     def test_films_side_by_side(self):
         slow = self.write("slow.json", scene(duration=0.05, method={"name": "rk4", "timeStep": 0.01}))
         film = self.path("f.mp4")
