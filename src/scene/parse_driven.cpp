@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "math/elementary.h"
 #include "scene/parse_pose.h"
@@ -107,6 +108,11 @@ OscillatingMotion parseOscillation(const Field& field, const RigidTransform& mid
   motion.amplitude = reader.number("amplitude", kAmplitudes, "m", 0);
   motion.frequency = reader.number("frequency", kFrequencies, "Hz", 0);
   motion.phase = reader.number("phase", kPhases, "rad", 0);
+  const double speed = 2 * std::numbers::pi * std::abs(motion.amplitude) * motion.frequency;
+  if (speed > kSpeeds.most)
+    addFault(faults, field,
+             fmt::format("the body would move with up to {:.3g} m/s, 2 pi x amplitude x frequency; allowed are {:g}",
+                         speed, kSpeeds.most));
   reader.rejectUnknownKeys();
   return motion;
 }

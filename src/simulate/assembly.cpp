@@ -17,8 +17,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kNearWelded = 2;            // of the sum of two radii: far more than projection moves welded bodies
-constexpr double kVelocityRounding = 1e-12;  // m/s a m of rod: less is no violation, only decimal digits
+constexpr double kNearWelded = 2;  // of the sum of two radii: far more than projection moves welded bodies
+// m/s a m of rod, and of the fastest velocity if that is above 1: less is no violation, only decimal digits.
+constexpr double kVelocityRounding = 1e-12;
 
 Attachment attach(const Anchor& anchor, const Scene& scene, const std::vector<int>& sceneBodies) {
   if (anchor.body == kWorld) return {kFixed, anchor.point};
@@ -225,7 +226,10 @@ void satisfyConstraints(const Scene& scene, Assembly& assembly) {
   first.factorize(before);
   first.constrainVelocities(assembly.state);
   solver.constrainVelocities(assembly.state);
-  if (violation.rate > kVelocityRounding)
+  const Eigen::Index poses = poseComponents(before);
+  const double fastest =
+      before.segment(poses, before.size() - kLedgerSize - poses).cwiseAbs().maxCoeff();  // m/s, rad/s
+  if (violation.rate > kVelocityRounding * std::max(1.0, fastest))
     assembly.warnings.push_back(fmt::format(
         "{}: the start velocities would stretch or shorten rods or pull joints apart, most of all {} with {:.3g} m/s; "
         "they were changed by up to {:.3g} to fit",

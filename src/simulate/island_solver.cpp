@@ -118,11 +118,13 @@ void IslandSolver::advance(double time, Motion& motion) {
 }
 
 void IslandSolver::advance(double time) {
-  if (mayNotGoOn()) changeMotion();
+  // Not before: frames in the step under way ask what has taken it.
+  if (method_.isAdaptive()) changeMotion();
   const double before = island_.time;
   coordinates_.beginStep(island_.state);
   if (events_) {
     advance(time, *events_);
+    if (!promiseEnd_ && !events_->fallbackReason().empty()) endPromise(*events_);
     if (!promiseEnd_ && events_->offConstraintsFrom()) endPromiseAtDeadPoint(*events_->offConstraintsFrom());
     if (const Correction* correction = island_.log.corrections().first(); correction && !promiseEnd_)
       endPromise(*correction);
@@ -131,13 +133,6 @@ void IslandSolver::advance(double time) {
   }
   const bool hasStepped = island_.step.time + island_.step.timeStep >= island_.time;
   coordinates_.endStep(island_.time - before, hasStepped ? island_.step.state : island_.state);
-  // The step under way ends later than `time`: its interpolant is needed as it is.
-  if (method_.isAdaptive()) changeMotion();
-}
-
-/// Whether a trial of events showed at its start that they do not serve.
-bool IslandSolver::mayNotGoOn() const {
-  return hasLeftEvents_ && events_ && !events_->fallbackReason().empty();
 }
 
 bool IslandSolver::keepsConstraints() const {
@@ -149,7 +144,7 @@ bool IslandSolver::keepsConstraints() const {
 void IslandSolver::changeMotion() {
   if (events_) {
     if (events_->fallbackReason().empty()) return;
-    if (!promiseEnd_) endPromise(*events_);
+    if (!promiseEnd_) endPromise(*events_);  // at the start
     hasLeftEvents_ = true;
     island_.assembly.mechanism.contacts.clear();
     return changeToSteps();

@@ -89,7 +89,10 @@ class IslandSolver {
   std::vector<StartedPush> pushesAt(double time) const { return island_.pushes.startedBy(time); }
 
   /// What an island goes on with that begins from the last step's end.
-  IslandHistory history() const { return {promiseEnd_, hasLeftEvents_, steps_ != nullptr}; }
+  IslandHistory history() const {
+    const bool leavesEvents = events_ && !events_->fallbackReason().empty();
+    return {promiseEnd_, hasLeftEvents_ || leavesEvents, steps_ != nullptr || leavesEvents};
+  }
 
  private:
   void advance(double time);
@@ -103,7 +106,6 @@ class IslandSolver {
   void endPromise(const Correction& correction);
   template <class Motion>
   static void advance(double time, Motion& motion);
-  bool mayNotGoOn() const;
   bool keepsConstraints() const;
   bool isVisual() const { return island_.scene.accuracy > kVisualAccuracy; }
   /// The state of a frame inside a step. Its difference from the energy of the step's start is an error of that frame

@@ -17,6 +17,7 @@
 namespace cradle {
 namespace {
 
+constexpr double kPassedLimit = 1e-9;                                  // of the size: less is rounding
 constexpr double kTouchingRatio = 1e-9;                                // of the smaller body's size
 constexpr double kModelRatio = std::numeric_limits<float>::epsilon();  // of a model's: its vertices are that exact
 constexpr double kMaxOverlapRatio = 0.5;                               // of the smaller body's inner radius
@@ -155,6 +156,29 @@ void addFaults(const std::vector<StartOverlap>& overlaps, const char* why, std::
   }
 }
 
+/// Whether a rope is longer than it may be, or a joint beyond its stop.
+bool isPassed(const Limit& limit, const VectorX& state) {
+  return motionOf(limit, state).slackLength < -kPassedLimit * sizeOf(limit);
+}
+
+/// Adds a fault for each limit that bodies have come beyond that were moved apart; `before` are those that were passed
+/// then, which are other faults.
+void addPassedLimits(const Scene& scene, const Assembly& assembly, const std::vector<bool>& before,
+                     std::vector<std::string>& faults) {
+  for (std::size_t i = 0; i < assembly.limits.size() && faults.size() < kMaxFaultsTold; ++i) {
+    if (before[i] || !isPassed(assembly.limits[i], assembly.state)) continue;
+    const auto [a, b] = assembly.limitBodies[i];
+    const bool isRope = std::holds_alternative<RopeLimit>(assembly.limits[i]);
+    const Body& body = scene.bodies[static_cast<std::size_t>(a != kWorld ? a : b)];
+    faults.push_back(
+        fmt::format("{}: \"{}\" overlaps what it touches at the start, or is moved by what does, and moving it out "
+                    "brings it beyond "
+                    "{}; mend its place in the scene, or {}",
+                    body.where, body.name, isRope ? "the length of its rope" : "a limit of its joint",
+                    isRope ? "make the rope longer" : "widen the limit"));
+  }
+}
+
 /// Moves bodies apart until none overlaps, each round of as many pairs as `overlaps`; what is left is a fault.
 void moveAllApart(const Scene& scene, const std::vector<StartOverlap>& overlaps, Assembly& assembly,
                   std::vector<std::string>& faults) {
@@ -162,6 +186,8 @@ void moveAllApart(const Scene& scene, const std::vector<StartOverlap>& overlaps,
   if (pushes > kMaxPushes)
     return addFaults(overlaps, "; more pairs overlap than are moved apart: mend their places in the scene", faults);
   const double rounds = std::min<double>(kMaxPushRounds, kMaxPushes / pushes);
+  std::vector<bool> passed;
+  for (const Limit& limit : assembly.limits) passed.push_back(isPassed(limit, assembly.state));
   std::vector<StartOverlap> left = overlaps;
   for (int round = 0; round < rounds && !left.empty(); ++round) {
     moveApart(assembly);
@@ -175,6 +201,7 @@ void moveAllApart(const Scene& scene, const std::vector<StartOverlap>& overlaps,
             ", and what is around holds them together: mend their places in the scene, or those of what ties and "
             "supports them",
             faults);
+  if (left.empty()) addPassedLimits(scene, assembly, passed, faults);
   for (const StartOverlap& overlap : overlaps)
     assembly.warnings.push_back(textOf(overlap) + "; they were moved apart before the run");
 }

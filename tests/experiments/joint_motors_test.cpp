@@ -385,6 +385,36 @@ TEST(JointMotors, MotorPushesOnWhereFrictionHelpsItInSteps) {
   }
 }
 
+/// Three bodies on hinges, the upper two on each other's edges from 2 s on: contact is resolved in steps then, and
+/// events are tried again and again. A frame inside the last step before a trial belongs to that step: far below its
+/// target, the motor pushes with all it has in each.
+TEST(JointMotors, FramesBeforeATrialOfEventsHaveTheForcesOfTheirStep) {
+  const Trajectory run = simulate(sceneWith(R"("duration": 3, "accuracy": 1e-5, "output": {"framesPerSecond": 977},
+    "materials": {"m": {"staticFriction": 0, "dynamicFriction": 0}},
+    "bodies": [{"name": "lower", "shape": {"cylinder": {"radius": 2.1101312, "length": 7.5321196}}, "material":
+    "m", "position": [62.746284, 49.126532, -1.9547938], "orientation": {"w": 0.52287965, "x": 0.16594409, "y":
+    -0.37007215, "z": -0.74973731}, "mass": 84.000492}, {"name": "middle", "shape": {"box": {"size": [5.357652,
+    3.9177492, 4.4512147]}}, "material": "m", "position": [73.246284, 47.626532, 1.0452062], "orientation":
+    {"w": 0.97827059, "x": 0.11978288, "y": 0.035225012, "z": -0.16552313}, "mass": 42.974069}, {"name":
+    "upper", "shape": {"cylinder": {"radius": 2.293634, "length": 11.597637}}, "material": "m", "position":
+    [83.746284, 46.126532, 4.0452062], "orientation": {"w": 0.66771619, "x": 0.14394257, "y": -0.66341919, "z":
+    0.30546784}}], "hinges": [{"bodyA": "lower", "anchorA": [1.0069594, -4.6262685, 2.5794713], "anchorB":
+    [57.646284, 50.026532, -3.4547938], "axis": [-0.64646981, 0.66719024, 0.61917051], "limits": {"lower":
+    -0.26114553, "upper": 0.13112267, "restitution": 0.5}}, {"bodyA": "middle", "anchorA": [-4.9288986,
+    -1.2038779, -1.823907], "bodyB": "lower", "anchorB": [-1.3984553, 4.7708491, -2.6558091], "axis":
+    [-0.72062603, -0.047947092, 0.33520097], "motor": {"targetVelocity": 1.6983637, "maxTorque": 58532330.0}},
+    {"bodyA": "upper", "anchorA": [-0.92454451, 4.0688601, 3.4146149], "bodyB": "middle", "anchorB": [5.1170911,
+    1.5785178, 1.7588803], "axis": [-2.0008517, 0.85309991, -0.13955584]}]
+    )"));
+  long slow = 0;
+  for (const Frame& frame : run.frames) {
+    if (frame.time == 0 || std::abs(frame.joints[1].velocity) > 1.6) continue;
+    ++slow;
+    EXPECT_NEAR(frame.joints[1].force, 58532330, 1) << frame.time;
+  }
+  EXPECT_GT(slow, 100);
+}
+
 /// A crank of 0.25 m from (0, 0), a coupler of 1 m and a rocker of 0.8 m from (0.85, 0), at right angles to the line of
 /// the pivots at the start. Their coordinates keep the coupler's length; the motor's work is the integral of its force
 /// over the crank's coordinate. Both ends of an interval in which the motor comes to its target have forces that

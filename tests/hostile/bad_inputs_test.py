@@ -807,7 +807,7 @@ for row in (
     ("scale 1e300", "inspect box.3ds --scale 1e300", "--scale: ", r"1e+300", "1e+18"),
     ("methods none", "study good.json -o new --methods none", "--methods: ", '"none"', "explicitEuler", "dop853"),
     ("maps of nothing", "stability -o new --maps everything", "--maps: ", '"everything"', "step_stiffness"),
-    ("film of another kind", "video good.sqlite -o new.avi", r"new\.gif: ", ".mp4"),
+    ("film of another kind", "video good.sqlite -o new.avi", r"new\.avi: ", ".mp4"),
     ("table of another kind", "export good.sqlite -o new.xlsx", r"new\.xlsx: ", "FILE.csv", "FILE.glb"),
     ("asset root that is none", "check good.json --asset-root none", "none: ", "is no folder"),
     ("asset root that is a file", "plan good.json --asset-root box.3ds", r"box\.3ds: ", "is no folder"),

@@ -263,6 +263,27 @@ TEST(StartOverlaps, ThatNothingCanMendAreRefused) {
               HasSubstr("overlap by 20 mm"));
 }
 
+// Two balls of 0.1 m whose overlap of 20 mm moves each by 10 mm; a slider or a rope leaves the second one less, or
+// more.
+TEST(StartOverlaps, ThatOnlyALimitCouldMendAreRefused) {
+  const std::string balls = ball("a", 0, R"(, "motion": "static")") + ", " + ball("b", 0.18);
+  const auto slider = [](const char* upper) {
+    return fmt::format(
+        R"(, "sliders": [{{"bodyA": "b", "anchorA": [0, 0, 0], "anchorB": [0.18, 0, 0], "axis": [1, 0, 0],
+        "limits": {{"lower": -1, "upper": {}}}}}])",
+        upper);
+  };
+  const auto rope = [](const char* length) {
+    return fmt::format(R"(, "ropes": [{{"bodyA": "b", "anchorA": [0, 0, 0], "anchorB": [-1, 0, 0], "maxLength": {}}}])",
+                       length);
+  };
+  EXPECT_EQ(refusalOf(balls, slider("0.021")), "");
+  EXPECT_THAT(refusalOf(balls, slider("0.019")), HasSubstr("\"b\" overlaps what it touches"));
+  EXPECT_THAT(refusalOf(balls, slider("0.019")), HasSubstr("beyond a limit of its joint"));
+  EXPECT_EQ(refusalOf(balls, rope("1.21")), "");
+  EXPECT_THAT(refusalOf(balls, rope("1.19")), HasSubstr("beyond the length of its rope"));
+}
+
 TEST(StartOverlaps, OfWhatCannotTouchDoNotMatter) {
   EXPECT_EQ(refusalOf(all({box("wall", 0, R"(, "motion": "static")"), box("floor", 0.5, R"(, "motion": "static")")})),
             "");
