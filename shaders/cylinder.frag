@@ -10,6 +10,9 @@ flat in vec4 axis;  // unit; 0 on the side, +-1 on an end
 flat in float halfLength;
 in float drawnRadius;
 in float coverage;
+#if PATTERNS
+flat in vec3 bodySide;  // unit, across the axis
+#endif
 
 out vec4 color;
 
@@ -28,5 +31,9 @@ void main() {
     n = axis.w * axis.xyz;
     t = (halfLength - dot(from, n)) / min(dot(ray, n), -1e-6);
   }
+#if PATTERNS
+  vec3 fromCenter = from + t * ray;
+  bodyPlace = vec3(dot(fromCenter, bodySide), dot(fromCenter, axis.xyz), dot(fromCenter, cross(bodySide, axis.xyz)));
+#endif
   color = vec4(encode(shade(eye + t * ray, n)), sampleShare(coverage));
 }

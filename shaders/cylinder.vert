@@ -9,9 +9,10 @@ uniform float pixelSize;  // m, of a pixel at a depth of 1 m; 0 for the shadow m
 layout(location = 0) in vec3 place;  // side: -1 or 1 for the ends, share of the visible angle -1..1, 0; end: cos, sin, 1
 layout(location = 2) in vec4 centerAndRadius;    // m
 layout(location = 3) in vec4 axisAndLength;      // unit; m
-layout(location = 5) in vec4 instanceRoughness;  // w
+layout(location = 4) in vec4 side;               // unit, across the axis; of a pattern
+layout(location = 5) in vec4 instanceRoughness;  // w; linear colour of the pattern
 layout(location = 6) in vec4 instanceColor;      // linear; w is metallic
-layout(location = 7) in vec4 instanceOccluders;  // first and number of the occluders near
+layout(location = 7) in vec4 instanceOccluders;  // first and number of the occluders near; twice the kind of pattern; its cell, m
 
 flat out vec4 base;  // centre, radius
 flat out vec4 axis;  // unit; 0 on the side, +-1 on an end
@@ -21,6 +22,11 @@ out float coverage;
 flat out vec4 surfaceColor;
 flat out float roughness;
 flat out vec2 nearOccluders;
+#if PATTERNS
+flat out vec3 bodySide;
+flat out vec4 pattern;
+flat out float patternKind;
+#endif
 
 const float kRightAngle = 1.57079633;
 const float kThinnest = 0.55;  // pixels: radius of the thinnest line that is drawn; thinner ones fade
@@ -54,5 +60,10 @@ void main() {
   surfaceColor = instanceColor;
   roughness = instanceRoughness.w;
   nearOccluders = instanceOccluders.xy;
+#if PATTERNS
+  pattern = vec4(instanceRoughness.xyz, instanceOccluders.w);
+  patternKind = floor(0.5 * instanceOccluders.z);
+  bodySide = side.xyz;
+#endif
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

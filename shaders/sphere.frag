@@ -8,6 +8,10 @@
 
 flat in vec4 sphere;  // centre, radius
 
+#if PATTERNS
+flat in vec4 bodyTurn;  // worldFromBody as a quaternion, w last
+#endif
+
 out vec4 color;
 
 void main() {
@@ -18,5 +22,9 @@ void main() {
   // At the edge, the pixel's centre may miss the sphere: the ray then grazes it.
   vec3 outwards = aside - sqrt(max(sphere.w * sphere.w - dot(aside, aside), 0.0)) * ray;
   vec3 n = normalize(outwards);
+#if PATTERNS
+  vec3 t = 2.0 * cross(n, bodyTurn.xyz);  // turned back
+  bodyPlace = sphere.w * (n + bodyTurn.w * t + cross(t, bodyTurn.xyz));
+#endif
   color = vec4(encode(shade(sphere.xyz + sphere.w * n, n)), 1.0);
 }

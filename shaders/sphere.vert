@@ -7,15 +7,21 @@ uniform vec4 viewer;  // m; w = 0: infinitely far in that direction
 
 layout(location = 0) in vec3 place;           // angle from the axis to the viewer, 1 at the outline; direction around it
 layout(location = 2) in vec4 centerAndRadius;    // m
-layout(location = 5) in vec4 instanceRoughness;  // w
+layout(location = 3) in vec4 worldFromBody;      // a quaternion, w last; of a pattern
+layout(location = 5) in vec4 instanceRoughness;  // w; linear colour of the pattern
 layout(location = 6) in vec4 instanceColor;      // linear; w is metallic
-layout(location = 7) in vec4 instanceOccluders;  // first and number of the occluders near; 1 if it mirrors shadows
+layout(location = 7) in vec4 instanceOccluders;  // first and number of the occluders near; 1 if it mirrors shadows, and twice the kind of pattern; its cell, m
 
 flat out vec4 sphere;
 flat out vec4 surfaceColor;
 flat out float roughness;
 flat out vec2 nearOccluders;
 flat out float mirrorsShadows;
+#if PATTERNS
+flat out vec4 bodyTurn;
+flat out vec4 pattern;
+flat out float patternKind;
+#endif
 
 const float kRightAngle = 1.57079633;
 
@@ -34,6 +40,11 @@ void main() {
   surfaceColor = instanceColor;
   roughness = instanceRoughness.w;
   nearOccluders = instanceOccluders.xy;
-  mirrorsShadows = instanceOccluders.z;
+  mirrorsShadows = mod(instanceOccluders.z, 2.0);
+#if PATTERNS
+  pattern = vec4(instanceRoughness.xyz, instanceOccluders.w);
+  patternKind = floor(0.5 * instanceOccluders.z);
+  bodyTurn = worldFromBody;
+#endif
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

@@ -6,10 +6,16 @@
 in vec3 position;
 in vec3 normal;
 in float coverage;
+#if PATTERNS
+in vec3 bodyPosition;
+#endif
 
 out vec4 color;
 
 void main() {
+#if PATTERNS
+  bodyPlace = bodyPosition;
+#endif
   vec3 n = normalize(gl_FrontFacing ? normal : -normal);
   color = vec4(encode(shade(position, n)), sampleShare(coverage));
 }

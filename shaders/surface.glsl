@@ -15,6 +15,35 @@ uniform vec3 fillRadiance[FILL_LIGHTS];
 flat in vec4 surfaceColor;  // linear; w is metallic
 flat in float roughness;
 flat in vec2 nearOccluders;
+#if PATTERNS
+flat in vec4 pattern;  // linear colour; w is the size of a cell, m
+flat in float patternKind;
+
+vec3 bodyPlace;  // of what is shaded, in the body's frame: main() says it
+
+// -1 and 1 in turn from whole number to whole number of x, and what lies between where a pixel has more than one.
+float alternating(float x) {
+  float wave = abs(mod(x + 0.5, 2.0) - 1.0) - 0.5;
+  return clamp(2.0 * wave / max(fwidth(x), 1e-6), -1.0, 1.0);
+}
+
+vec3 painted(vec3 base) {
+  // A little inside: faces of boxes lie where cells end.
+  vec3 place = 0.999 * bodyPlace / pattern.w;
+  float share = 0.0;
+  if (patternKind < 1.5) {
+    share = alternating(place.x);
+  } else if (patternKind < 2.5) {
+    share = alternating(place.x) * alternating(place.y) * alternating(place.z);
+  } else {
+    float across = max(length(place.xz), 1e-6);
+    float sine = place.z / across, sixth = sine * (3.0 - 4.0 * sine * sine);  // six sectors around the y axis
+    share = clamp(2.0 * sixth / max(fwidth(sixth), 1e-6), -1.0, 1.0);
+    share = mix(share, 1.0, clamp((0.5 - across) / max(fwidth(across), 1e-6) + 0.5, 0.0, 1.0));  // and two caps
+  }
+  return mix(base, pattern.rgb, 0.5 + 0.5 * share);
+}
+#endif
 
 const float kDielectric = 0.04;   // reflected straight on by plastic, wood, stone
 const float kSheen = 0.08;         // the same of what is seen in a mirror, at the usual slant
@@ -60,8 +89,12 @@ float sampleShare(float coverage) {
 vec3 shade(vec3 position, vec3 n) {
   vec3 v = normalize(eye - position);
   float metallic = surfaceColor.w;
-  vec3 matt = surfaceColor.rgb * (1.0 - metallic);
-  vec3 straightOn = mix(vec3(kDielectric), surfaceColor.rgb, metallic);
+  vec3 base = surfaceColor.rgb;
+#if PATTERNS
+  if (patternKind > 0.5) base = painted(base);
+#endif
+  vec3 matt = base * (1.0 - metallic);
+  vec3 straightOn = mix(vec3(kDielectric), base, metallic);
   float turn = length(fwidth(n));  // thin things turn within a pixel
   float alpha = min(roughness * roughness + kLightWidth + 0.3 * turn, 1.0 + kLightWidth);
   int first = int(nearOccluders.x), count = int(nearOccluders.y);

@@ -21,6 +21,11 @@ flat out float roughness;
 flat out vec2 nearOccluders;
 flat out float mirrorsShadows;
 out float coverage;
+#if PATTERNS
+out vec3 bodyPosition;
+flat out vec4 pattern;
+flat out float patternKind;
+#endif
 
 const float kTurn = 6.28318531;
 const float kThinnest = 0.55;  // pixels: radius of the thinnest line that is drawn; thinner ones fade
@@ -83,6 +88,11 @@ void main() {
   surfaceColor = instanceColor;
   roughness = sagAndRoughness.w;
   nearOccluders = instanceOccluders.xy;
+#if PATTERNS
+  bodyPosition = vec3(0.0);
+  pattern = vec4(0.0);
+  patternKind = 0.0;
+#endif
   mirrorsShadows = 0.0;
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

@@ -13,6 +13,7 @@
 namespace cradle {
 namespace {
 
+constexpr double kPatternCells = 6;     // stripes, or squares, across a body
 constexpr double kVisibleFacet = 0.25;  // pixels by which a chord may miss the circle before its corner shows
 constexpr double kNearer = 1.2;         // things come so much nearer than the middle of the scene
 
@@ -180,6 +181,9 @@ BodyAppearance lookOf(const Scene& scene, const Body& body, const std::vector<st
     look.sphere = sphereOfModel.at(static_cast<std::size_t>(model->model));
     look.surface = look.parts.at(0).surface;
   }
+  const float cell = look.local.isEmpty() ? 0 : static_cast<float>(look.local.sizes().maxCoeff() / kPatternCells);
+  look.surface.patternCell = cell;
+  for (BodyPart& part : look.parts) part.surface.patternCell = cell;
   const ContactShadowShape kind = look.cylinder                             ? ContactShadowShape::cylinder
                                   : std::holds_alternative<Box>(body.shape) ? ContactShadowShape::box
                                                                             : ContactShadowShape::ellipsoid;
@@ -232,7 +236,13 @@ ArrowLook addArrow(double longest, Appearance& appearance) {
 
 Surface surfaceOf(const Material& material, const std::optional<Vec3f>& fileColor) {
   const Vec3f color = material.baseColor ? *material.baseColor : fileColor.value_or(Vec3f::Constant(0.69f));
-  return {linearFromSrgb(color), static_cast<float>(material.metallic), static_cast<float>(material.roughness)};
+  return {linearFromSrgb(color), static_cast<float>(material.metallic), static_cast<float>(material.roughness),
+          material.pattern,      linearFromSrgb(material.patternColor), 0};
+}
+
+Surface withoutPattern(const Surface& surface) {
+  if (surface.pattern == Pattern::none) return surface;
+  return {(surface.color + surface.patternColor) / 2, surface.metallic, surface.roughness};
 }
 
 Vec3f linearFromSrgb(const Vec3f& color) {

@@ -13,6 +13,9 @@ struct Surface {
   Vec3f color = Vec3f::Constant(0.434f);  // linear, 0..1
   float metallic = 0;                     // 0..1
   float roughness = 0.5f;                 // 0..1
+  Pattern pattern = Pattern::none;
+  Vec3f patternColor = Vec3f::Zero();  // linear, 0..1
+  float patternCell = 0;               // m, of a stripe or square
   bool operator==(const Surface&) const = default;
 };
 
@@ -81,6 +84,9 @@ Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPer
 
 /// Of a scene's material; where it names no colour, that of a model's file (sRGB) stands.
 Surface surfaceOf(const Material& material, const std::optional<Vec3f>& fileColor);
+
+/// The surface as it is seen in small mirrors: a pattern by its mean colour.
+Surface withoutPattern(const Surface& surface);
 
 /// Linear colour of an sRGB one, channels 0..1.
 Vec3f linearFromSrgb(const Vec3f& color);

@@ -30,11 +30,12 @@ void appendBody(const BodyAppearance& look, const RigidTransform& worldFromBody,
 void appendRound(const BodyAppearance& look, const RigidTransform& worldFromBody, int body, DrawList& list) {
   if (look.cylinder)
     list.cylinders.push_back({worldFromBody.translation, worldFromBody.rotation * Vec3::UnitY(), look.cylinder->radius,
-                              look.cylinder->length, look.surface});
+                              look.cylinder->length, look.surface, 0, 0, worldFromBody.rotation * Vec3::UnitX()});
   if (!look.sphere) return;
   const Vec3 center = worldFromBody * look.sphere->center;
-  list.occluders.push_back({center, look.sphere->radius, look.surface, body});
-  if (look.isDrawnAsSphere) list.spheres.push_back({center, look.sphere->radius, look.surface});
+  list.occluders.push_back({center, look.sphere->radius, withoutPattern(look.surface), body});
+  if (look.isDrawnAsSphere)
+    list.spheres.push_back({center, look.sphere->radius, look.surface, 0, 0, worldFromBody.rotation});
 }
 
 void appendSolids(const BodyAppearance& look, const RigidTransform& worldFromBody, int body, DrawList& list) {
@@ -44,7 +45,8 @@ void appendSolids(const BodyAppearance& look, const RigidTransform& worldFromBod
     list.contactShadows.push_back({place, half, solid.kind});
     if (look.sphere || solid.kind == ContactShadowShape::ellipsoid) continue;
     const double middle = std::max(std::min(half.x(), half.y()), std::min(std::max(half.x(), half.y()), half.z()));
-    list.occluders.push_back({place.translation, kBoxReach * middle, solid.surface, body, half, place.rotation});
+    list.occluders.push_back(
+        {place.translation, kBoxReach * middle, withoutPattern(solid.surface), body, half, place.rotation});
   }
 }
 

@@ -25,6 +25,7 @@ struct SphereItem {
   double radius = 0;
   Surface surface = {};
   int firstNearOccluder = 0, nearOccluders = 0;  // range of DrawList::nearOccluders
+  Quat rotation = Quat::Identity();              // worldFromBody, of a pattern
   Bounds bounds() const { return {center - Vec3::Constant(radius), center + Vec3::Constant(radius)}; }
 };
 
@@ -35,6 +36,7 @@ struct CylinderItem {
   double radius = 0, length = 0;
   Surface surface = {};
   int firstNearOccluder = 0, nearOccluders = 0;  // range of DrawList::nearOccluders
+  Vec3 side = Vec3::UnitX();                     // unit, across the axis: the body's x axis, of a pattern
   Bounds bounds() const;
 };
 

@@ -30,15 +30,17 @@ void putTransform(Instance& instance, const Mat3& matrix, const Vec3& translatio
     put(instance, static_cast<std::size_t>(row), matrix.row(row).transpose().cast<float>(), translation[row]);
 }
 
-/// Attributes 3..5 of an item with a surface and occluders near it; the first numbers of 3 are left alone.
+/// Attributes 3..5 of an item with a surface and occluders near it.
 template <typename Item>
 void putLook(const Item& item, bool isSphere, Instance& instance) {
-  instance[15] = item.surface.roughness;
-  put(instance, 4, item.surface.color, item.surface.metallic);
+  const Surface& surface = item.surface;
+  put(instance, 3, surface.pattern == Pattern::none ? Vec3f(Vec3f::Zero()) : surface.patternColor, surface.roughness);
+  put(instance, 4, surface.color, surface.metallic);
+  const int kinds = 2 * static_cast<int>(surface.pattern) + (isSphere && mirrorsShadows(surface) ? 1 : 0);
   put(instance, 5,
       Vec3f(static_cast<float>(item.firstNearOccluder), static_cast<float>(item.nearOccluders),
-            isSphere && mirrorsShadows(item.surface)),
-      0);
+            static_cast<float>(kinds)),
+      surface.pattern == Pattern::none ? 0 : surface.patternCell);
 }
 
 /// How fine an outline has to be: a polygon of n corners, as large as the circle, misses it by r (pi / n)^2 / 3.
@@ -123,6 +125,7 @@ Instance instanceOf(const MeshItem& item, const RenderSetup& setup) {
 Instance instanceOf(const SphereItem& item, const RenderSetup& setup) {
   Instance instance{};
   put(instance, 0, setup.relative(item.center), item.radius);
+  if (item.surface.pattern != Pattern::none) put(instance, 1, item.rotation.vec().cast<float>(), item.rotation.w());
   putLook(item, true, instance);
   return instance;
 }
@@ -131,6 +134,7 @@ Instance instanceOf(const CylinderItem& item, const RenderSetup& setup) {
   Instance instance{};
   put(instance, 0, setup.relative(item.center), item.radius);
   put(instance, 1, item.axis.cast<float>(), item.length);
+  if (item.surface.pattern != Pattern::none) put(instance, 2, item.side.cast<float>(), 0);
   putLook(item, false, instance);
   return instance;
 }

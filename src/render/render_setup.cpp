@@ -255,6 +255,8 @@ RenderSetup makeRenderSetup(const Scene& scene, const View& view, const std::opt
   setup.size = view.size();
   setup.origin = bounds.center();
   setup.lighting = makeLighting(scene, ground);
+  setup.hasPatterns = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                  [](const Material& material) { return material.pattern != Pattern::none; });
   const double seen = heightOfPicture(view, setup.origin);
   setup.shadow = makeShadowView(setup.lighting.lamps[0].towards, seen);
   setup.ground = ground;
@@ -265,8 +267,8 @@ RenderSetup makeRenderSetup(const Scene& scene, const View& view, const std::opt
 }
 
 std::string shaderDefinitions(const RenderSetup& setup) {
-  return fmt::format("#define HAS_GROUND {}\n#define FILL_LIGHTS {}\n", setup.ground ? 1 : 0,
-                     setup.lighting.lamps.size() - 1);
+  return fmt::format("#define HAS_GROUND {}\n#define FILL_LIGHTS {}\n#define PATTERNS {}\n", setup.ground ? 1 : 0,
+                     setup.lighting.lamps.size() - 1, setup.hasPatterns ? 1 : 0);
 }
 
 void setCamera(const RenderSetup& setup, const ShaderProgram& program) {

@@ -63,6 +63,7 @@ struct ShadedRegion {
 /// frame.
 struct RenderSetup {
   int width = 0, height = 0;
+  bool hasPatterns = false;  // of materials
   Camera camera;
   FrameLayout layout;
   double size = 1;  // m: View::size()

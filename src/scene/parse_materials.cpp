@@ -19,6 +19,20 @@ void checkFrictions(double staticFriction, double dynamicFriction, const Field& 
                        dynamicFriction));
 }
 
+void parsePattern(ObjectReader& reader, Material& material) {
+  material.pattern = reader.choice<Pattern>("pattern",
+                                            {{"none", Pattern::none},
+                                             {"stripes", Pattern::stripes},
+                                             {"checks", Pattern::checks},
+                                             {"beachBall", Pattern::beachBall}},
+                                            material.pattern);
+  const auto color = reader.find("patternColor");
+  if (color) material.patternColor = readColor(*color, reader.faults()).value_or(material.patternColor);
+  if (color && material.pattern == Pattern::none)
+    addFault(reader.faults(), *color,
+             "patternColor is the second colour of a pattern; give the material one, or leave it out");
+}
+
 Material parseMaterial(const Field& field, const std::string& name, FaultList& faults) {
   const std::size_t faultsBefore = faults.count();
   Material material;
@@ -36,6 +50,7 @@ Material parseMaterial(const Field& field, const std::string& name, FaultList& f
   material.baseColor = reader.color("baseColor");
   material.metallic = reader.number("metallic", kFraction, "", material.metallic);
   material.roughness = reader.number("roughness", kFraction, "", material.roughness);
+  parsePattern(reader, material);
   reader.rejectUnknownKeys();
   if (faults.count() == faultsBefore) {
     checkFrictions(material.staticFriction, material.dynamicFriction, field, faults);

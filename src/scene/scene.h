@@ -20,6 +20,9 @@ namespace cradle {
 
 constexpr int kWorld = -1;  // in place of a body index: the world
 
+/// What a surface is painted with, in its body's frame, so that its turning is seen.
+enum class Pattern { none, stripes, checks, beachBall };
+
 struct Material {
   std::string name;                // empty: the material of bodies that name none
   double density = 1000;           // kg/m^3
@@ -29,6 +32,8 @@ struct Material {
   std::optional<Vec3f> baseColor;  // sRGB, 0..1; unset: #b0b0b0, or what a model's file says
   double metallic = 0;             // 0..1
   double roughness = 0.5;          // 0..1
+  Pattern pattern = Pattern::none;
+  Vec3f patternColor = Vec3f::Ones();  // sRGB, 0..1, beside baseColor
 };
 
 /// How two materials meet: as `pairs` says, else restitution minimum, frictions geometric mean.

@@ -75,6 +75,8 @@ TEST_F(EveryKey, MaterialsFollowTheUnnamedOne) {
   EXPECT_EQ(steel.baseColor, Vec3f(0.2F, 0.4F, 0.6F));
   EXPECT_EQ(steel.metallic, 1);
   EXPECT_EQ(steel.roughness, 0.25);
+  EXPECT_EQ(steel.pattern, Pattern::checks);
+  EXPECT_EQ(steel.patternColor, Vec3f(1, 0, 0));
   EXPECT_FALSE(scene_.materials[2].baseColor.has_value());
 }
 
@@ -230,6 +232,7 @@ TEST(SceneDefaults, OfABodyAreThoseOfTheTable) {
   EXPECT_EQ(scene.materials.at(0).dynamicFriction, 0.5);
   EXPECT_EQ(scene.materials.at(0).metallic, 0);
   EXPECT_EQ(scene.materials.at(0).roughness, 0.5);
+  EXPECT_EQ(scene.materials.at(0).pattern, Pattern::none);
   EXPECT_EQ(std::get<Sphere>(body.shape).radius, 1);
   EXPECT_EQ(body.collision, CollisionChoice::automatic);
   EXPECT_EQ(body.motion, Motion::dynamic);
