@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace cradle {
@@ -10,6 +11,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kTerminalInterval{100};  // ten redraws a second look smooth
 constexpr std::chrono::milliseconds kLogInterval{10000};     // keeps logs short
+constexpr std::chrono::milliseconds kMaxLogInterval{300000};
 
 std::string minutesAndSeconds(double seconds) {
   const long whole = static_cast<long>(seconds + 0.5);
@@ -24,6 +26,7 @@ Progress::Progress(std::string task, std::string unit, long total, bool quiet)
       total_(total),
       quiet_(quiet),
       animated_(isatty(STDERR_FILENO) == 1),
+      logInterval_(kLogInterval),
       start_(Clock::now()),
       lastDrawn_(start_) {}
 
@@ -64,7 +67,10 @@ void Progress::showTime(double time) {
 
 void Progress::draw(bool isDue, const std::string& within) {
   const auto now = Clock::now();
-  if (quiet_ || !(isDue || now - lastDrawn_ >= (animated_ ? kTerminalInterval : kLogInterval))) return;
+  if (quiet_ || !(isDue || now - lastDrawn_ >= (animated_ ? kTerminalInterval : logInterval_))) return;
+  // A study may be at one of its methods for minutes.
+  logInterval_ = done_ == told_ && within.empty() ? std::min(2 * logInterval_, kMaxLogInterval) : kLogInterval;
+  told_ = done_;
   lastDrawn_ = now;
   drawn_ = true;
   const std::string text = animated_ ? "\r\x1b[K" + line(within) : line(within) + "\n";

@@ -6,7 +6,7 @@
 namespace cradle {
 
 /// Progress of long work on stderr, with time left: one line that is redrawn on a terminal, and elsewhere a plain line
-/// every ten seconds. Silent when `quiet`. The line is ended when the object goes.
+/// every ten seconds, more seldom while it says the same. Silent when `quiet`. The line is ended when the object goes.
 class Progress {
  public:
   /// `unit` names what is counted ("frames"); total > 0.
@@ -35,6 +35,8 @@ class Progress {
   std::string task_, unit_;
   long total_, skipped_ = 0, done_ = 0;
   bool quiet_, animated_, drawn_ = false;
+  long told_ = -1;  // of done_, in the last plain line
+  std::chrono::milliseconds logInterval_;
   Clock::time_point start_, lastDrawn_;
 };
 

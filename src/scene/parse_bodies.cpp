@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scene/given_mass.h"
+#include "scene/parse_copies.h"
 #include "scene/parse_driven.h"
 #include "scene/parse_pose.h"
 #include "scene/parse_shape.h"
@@ -14,29 +15,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kMaxBodies = 1e6;
 // Of bodies that are near enough to touch, as plans have them (BroadPhase); and as many as links could take out.
 constexpr double kMaxPairs = 2e6, kMaxLinks = 1e6;
-
-struct Copies {
-  std::array<int, 3> count{1, 1, 1};
-  Vec3 spacing = Vec3::Ones();  // m
-};
-
-Copies parseCopies(const Field& field, FaultList& faults) {
-  Copies copies;
-  ObjectReader reader(field, faults);
-  if (const auto count = reader.find("count")) {
-    const std::vector<Field> items = readItems(*count, 3, faults);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const Range counts{1, kMaxBodies, false, true};
-      copies.count[i] = static_cast<int>(readNumber(items[i], counts, "", faults).value_or(1));
-    }
-  }
-  copies.spacing = reader.vector("spacing", kCoordinates, "m", copies.spacing);
-  reader.rejectUnknownKeys();
-  return copies;
-}
 
 void parseMaterialName(ObjectReader& reader, const SceneDraft& scene, BodyDraft& draft) {
   const auto field = reader.find("material");
@@ -100,32 +80,29 @@ void addBody(const Body& body, SceneDraft& scene, const Field& name, FaultList& 
   scene.draftOfBody.push_back(scene.bodies.size());
 }
 
-// Copy (ix, iy, iz) is named name_N, N = (ix*ny + iy)*nz + iz.
+// Copy number N is named name_N.
 void addCopies(const Copies& copies, const BodyDraft& draft, SceneDraft& scene, const Field& name, FaultList& faults) {
   Body body = draft.body;
-  int number = 0;
   std::vector<Body>& bodies = scene.scene.bodies;
-  const std::size_t count =
-      bodies.size() + std::size_t(copies.count[0]) * std::size_t(copies.count[1]) * std::size_t(copies.count[2]);
-  if (count > 2 * bodies.capacity()) bodies.reserve(count);
-  for (int ix = 0; ix < copies.count[0]; ++ix) {
-    for (int iy = 0; iy < copies.count[1]; ++iy) {
-      for (int iz = 0; iz < copies.count[2]; ++iz) {
-        body.name = fmt::format("{}_{}", draft.body.name, number++);
-        body.worldFromBody.translation =
-            draft.body.worldFromBody.translation + copies.spacing.cwiseProduct(Vec3(ix, iy, iz));
-        body.prescribed = draft.body.prescribed;
-        if (body.prescribed) shift(*body.prescribed, copies.spacing.cwiseProduct(Vec3(ix, iy, iz)));
-        addBody(body, scene, name, faults);
-      }
-    }
+  const int count = static_cast<int>(copies.total());
+  if (bodies.size() + static_cast<std::size_t>(count) > 2 * bodies.capacity())
+    bodies.reserve(bodies.size() + static_cast<std::size_t>(count));
+  for (int number = 0; number < count; ++number) {
+    const RigidTransform move = copies.move(number);
+    body.name = fmt::format("{}_{}", draft.body.name, number);
+    body.worldFromBody = move * draft.body.worldFromBody;
+    body.linearVelocity = move.rotation * draft.body.linearVelocity;
+    body.angularVelocity = move.rotation * draft.body.angularVelocity;
+    body.prescribed = draft.body.prescribed;
+    if (body.prescribed) shift(*body.prescribed, move.translation);
+    addBody(body, scene, name, faults);
   }
 }
 
 // Copies may be far from the first.
 void checkPlaces(const Copies& copies, const BodyDraft& draft, const Field& field, FaultList& faults) {
-  const Vec3 last(copies.count[0] - 1, copies.count[1] - 1, copies.count[2] - 1);
-  const Vec3 place = draft.body.worldFromBody.translation + copies.spacing.cwiseProduct(last);
+  const RigidTransform last = copies.move(static_cast<int>(copies.total()) - 1);
+  const Vec3 place = last * draft.body.worldFromBody.translation;
   for (const double coordinate : place) {
     if (kCoordinates.holds(coordinate)) continue;
     addFault(faults, field,
@@ -146,6 +123,7 @@ double innerRadiusOf(const Shape& shape) {
 
 /// How many pairs of copies are nearer to each other than `distance`, counted up to `most` and a row more.
 double pairsNearer(double distance, const Copies& copies, double most) {
+  CRADLE_CHECK(!copies.ring);
   const auto reach = [&](int axis) {
     const int count = copies.count[static_cast<std::size_t>(axis)];
     const double steps = copies.spacing[axis] == 0 ? count : distance / std::abs(copies.spacing[axis]);
@@ -163,10 +141,19 @@ double pairsNearer(double distance, const Copies& copies, double most) {
   return pairs / 2;
 }
 
+/// The same of a ring through `place` (m), whose chords of k steps are 2 R sin(pi k / n), at least 4 R k / n: no fewer.
+double pairsNearer(double distance, const Copies::Ring& ring, const Vec3& place) {
+  const double radius = ring.axis.cross(place - ring.center).norm(), count = ring.count;
+  return count * std::floor(radius > 0 ? std::min(count / 2, distance * count / (4 * radius)) : count / 2);
+}
+
 /// What a plan would refuse after it has made all bodies: a line of a scene can ask for a million at one place.
 void requireApart(const Copies& copies, const BodyDraft& draft, const Field& field, const FaultList& faults) {
   if (draft.body.motion != Motion::dynamic || draft.body.collision == CollisionChoice::none) return;
-  if (pairsNearer(2 * innerRadiusOf(draft.body.shape), copies, kMaxPairs + kMaxLinks) <= kMaxPairs + kMaxLinks) return;
+  const double distance = 2 * innerRadiusOf(draft.body.shape), most = kMaxPairs + kMaxLinks;
+  const double pairs = copies.ring ? pairsNearer(distance, *copies.ring, draft.body.worldFromBody.translation)
+                                   : pairsNearer(distance, copies, most);
+  if (pairs <= most) return;
   faults.throwIfAny();
   throw Error(
       ErrorKind::limit, faults.where(field.place(), field.pointer),
@@ -178,16 +165,17 @@ void requireApart(const Copies& copies, const BodyDraft& draft, const Field& fie
 void writeOutBodies(ObjectReader& reader, BodyDraft& draft, SceneDraft& scene) {
   FaultList& faults = reader.faults();
   const auto copiesField = reader.find("copies");
-  const Copies copies = copiesField ? parseCopies(*copiesField, faults) : Copies{};
-  const double total = static_cast<double>(scene.scene.bodies.size()) +
-                       double(copies.count[0]) * double(copies.count[1]) * double(copies.count[2]);
+  const Copies copies = parseCopies(reader);
+  const double total = static_cast<double>(scene.scene.bodies.size()) + copies.total();
+  if (copies.ring && draft.body.prescribed)
+    addFault(faults, *copiesField, "a driven body has no copies in a ring; give each its own motion");
   draft.firstBody = static_cast<int>(scene.scene.bodies.size());
   const auto name = reader.find("name");
   if (!name || draft.body.name.empty()) return;
   if (total > kMaxBodies) {
     addFault(faults, copiesField.value_or(draft.field),
              fmt::format("the scene would have {} bodies; at most {} are allowed", total, kMaxBodies));
-  } else if (copiesField) {
+  } else if (copies.areAsked) {
     checkPlaces(copies, draft, *copiesField, faults);
     requireApart(copies, draft, *copiesField, faults);
     addCopies(copies, draft, scene, *name, faults);

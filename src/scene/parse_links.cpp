@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "math/rotation.h"
+#include "scene/parse_copies.h"
 #include "scene/parse_pose.h"
 
 namespace cradle {
@@ -58,11 +60,27 @@ void checkBodies(ObjectReader& reader, std::optional<int> bodyA, std::optional<i
   }
 }
 
+/// The body of a name, or of its first copy if the link is copied with it.
+std::optional<int> findEnd(const Field& name, const Copies& copies, const SceneDraft& scene, FaultList& faults) {
+  const auto* text = std::get_if<std::string>(&name.value->content);
+  const bool isCopied =
+      text != nullptr && copies.areAsked && !scene.bodyIndex.contains(*text) && scene.bodyIndex.contains(*text + "_0");
+  if (!isCopied) return findNamed(name, scene.bodyIndex, "body", faults);
+  const int first = scene.bodyIndex.at(*text + "_0");
+  const int count = scene.bodies[scene.draftOfBody[static_cast<std::size_t>(first)]].bodyCount;
+  if (count == copies.total()) return first;
+  addFault(
+      faults, name,
+      fmt::format("{} has {} copies, and what ties it {}; give both as many", inQuotes(*text), count, copies.total()));
+  return std::nullopt;
+}
+
 // bodyA, anchorA, bodyB, anchorB
-void parseEnds(ObjectReader& reader, const Vec3& usualAnchorB, const SceneDraft& scene, LinkDraft& draft) {
+void parseEnds(ObjectReader& reader, const Vec3& usualAnchorB, const Copies& copies, const SceneDraft& scene,
+               LinkDraft& draft) {
   const auto nameA = reader.require("bodyA"), nameB = reader.find("bodyB");
-  const auto bodyA = nameA ? findNamed(*nameA, scene.bodyIndex, "body", reader.faults()) : std::nullopt;
-  const auto bodyB = nameB ? findNamed(*nameB, scene.bodyIndex, "body", reader.faults()) : std::optional(kWorld);
+  const auto bodyA = nameA ? findEnd(*nameA, copies, scene, reader.faults()) : std::nullopt;
+  const auto bodyB = nameB ? findEnd(*nameB, copies, scene, reader.faults()) : std::optional(kWorld);
   checkBodies(reader, bodyA, bodyB, scene.scene);
   draft.anchorA = parseAnchor(reader, "anchorA", bodyA.value_or(kWorld), Vec3::Zero(), scene);
   draft.anchorB = parseAnchor(reader, "anchorB", bodyB.value_or(kWorld), usualAnchorB, scene);
@@ -206,12 +224,13 @@ using NamePlaces = std::map<std::string, std::string>;  // name of a link -> whe
 
 template <typename Link>
 LinkDraft parseLink(const Field& field, const LinkSyntax<Link>& kind, std::size_t number, const SceneDraft& scene,
-                    FaultList& faults) {
+                    Copies& copies, FaultList& faults) {
   LinkDraft draft;
   draft.field = field;
   ObjectReader reader(field, faults);
   const std::string name = reader.name("name", fmt::format("{}{}", kind.noun, number));
-  parseEnds(reader, kind.usualAnchorB, scene, draft);
+  copies = parseCopies(reader);
+  parseEnds(reader, kind.usualAnchorB, copies, scene, draft);
   Link link = kind.parse(reader, draft);
   reader.rejectUnknownKeys();
   link.name = name;
@@ -257,6 +276,60 @@ class HeldDirections {
   bool isAnyTooMany_ = false;
 };
 
+/// Whether a body is the first of as many copies.
+bool isCopyOfEntry(int body, const Copies& copies, const SceneDraft& scene) {
+  if (body == kWorld) return false;
+  const BodyDraft& draft = scene.bodies[scene.draftOfBody[static_cast<std::size_t>(body)]];
+  const bool isNumbered = scene.scene.bodies[static_cast<std::size_t>(body)].name != draft.body.name;
+  return isNumbered && body == draft.firstBody && draft.bodyCount == copies.total();
+}
+
+/// Takes an end to copy `number`: to that copy of its body, or, on what has no copies, moved along with them.
+void moveEnd(const Copies& copies, int number, const SceneDraft& scene, AnchorDraft& end) {
+  if (isCopyOfEntry(end.anchor.body, copies, scene)) {
+    end.anchor.body += number;
+    return;
+  }
+  const RigidTransform move = copies.move(number);
+  const RigidTransform world = end.anchor.body == kWorld
+                                   ? RigidTransform{}
+                                   : scene.scene.bodies[static_cast<std::size_t>(end.anchor.body)].worldFromBody;
+  end.anchor.point = world.inverse() * (move * (world * end.anchor.point));
+}
+
+/// Of a joint whose body A has no copies: its axis, in that body's frame, turns with them.
+template <typename Link>
+void turnAxis(const Copies& copies, int number, const SceneDraft& scene, const LinkDraft& first, Link& link) {
+  if constexpr (requires { link.axis; }) {
+    const int body = first.anchorA.anchor.body;
+    if (body == kWorld || isCopyOfEntry(body, copies, scene)) return;
+    const Quat& worldFromBody = scene.scene.bodies[static_cast<std::size_t>(body)].worldFromBody.rotation;
+    link.axis = worldFromBody.conjugate() * (copies.move(number).rotation * (worldFromBody * link.axis));
+  }
+}
+
+/// Copy `number` of a link without faults.
+template <typename Link>
+LinkDraft copyOf(const LinkDraft& first, const Copies& copies, int number, const SceneDraft& scene) {
+  LinkDraft draft = first;
+  Link& link = std::get<Link>(draft.link);
+  link.name += fmt::format("_{}", number);
+  turnAxis(copies, number, scene, first, link);
+  moveEnd(copies, number, scene, draft.anchorA);
+  moveEnd(copies, number, scene, draft.anchorB);
+  return draft;
+}
+
+/// A vertex has no place beside it that copies could move to.
+void checkCopies(const LinkDraft& draft, const Copies& copies, const SceneDraft& scene, FaultList& faults) {
+  if (!copies.areAsked) return;
+  for (const AnchorDraft* end : {&draft.anchorA, &draft.anchorB})
+    if (end->vertex && !isCopyOfEntry(end->anchor.body, copies, scene))
+      addFault(faults, end->field, "a vertex of a body without copies cannot move along with them; give a point");
+  if (static_cast<double>(scene.links.size()) + copies.total() > kMaxBodies)
+    addFault(faults, draft.field, fmt::format("the scene would have more than {} links", kMaxBodies));
+}
+
 template <typename Link>
 void parseKind(ObjectReader& root, const LinkSyntax<Link>& kind, NamePlaces& names, HeldDirections& held,
                SceneDraft& scene) {
@@ -265,7 +338,9 @@ void parseKind(ObjectReader& root, const LinkSyntax<Link>& kind, NamePlaces& nam
   for (const Field& item : root.items(kind.key)) {
     if (held.isAnyTooMany()) return;
     const std::size_t faultsBefore = faults.count();
-    LinkDraft draft = parseLink(item, kind, number++, scene, faults);
+    Copies copies;
+    LinkDraft draft = parseLink(item, kind, number++, scene, copies, faults);
+    checkCopies(draft, copies, scene, faults);
     draft.isSound = faults.count() == faultsBefore && isSound(draft, scene);
     const Link& link = std::get<Link>(draft.link);
     const auto [first, isNew] = names.emplace(link.name, link.where);
@@ -275,8 +350,16 @@ void parseKind(ObjectReader& root, const LinkSyntax<Link>& kind, NamePlaces& nam
                fmt::format("duplicate name {}; names of springs, rods, ropes and joints must differ; the first is {}",
                            inQuotes(link.name), first->second));
     }
-    held.add(draft, scene, faults);
-    scene.links.push_back(std::move(draft));
+    if (!copies.areAsked || !draft.isSound) {
+      held.add(draft, scene, faults);
+      scene.links.push_back(std::move(draft));
+      continue;
+    }
+    for (int copy = 0; copy < copies.total() && !held.isAnyTooMany(); ++copy) {
+      scene.links.push_back(copyOf<Link>(draft, copies, copy, scene));
+      held.add(scene.links.back(), scene, faults);
+      names.emplace(std::get<Link>(scene.links.back().link).name, link.where);
+    }
   }
 }
 

@@ -174,7 +174,7 @@ TEST_F(EveryKey, LinksJoinWhatTheyName) {
   EXPECT_EQ(scene_.sliders.at(0).anchorA.body, 3);
   EXPECT_TRUE(scene_.sliders.at(0).axis.isApprox(Vec3(0.6, 0.8, 0), kRoundingNearOne));
   EXPECT_TRUE(scene_.sliders.at(0).collide);
-  EXPECT_EQ(scene_.welds.at(0).name, "seam");
+  EXPECT_EQ(scene_.welds.at(0).name, "seam_0");
   EXPECT_EQ(scene_.welds.at(0).anchorA.body, 4);
 }
 
