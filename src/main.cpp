@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -327,6 +328,7 @@ std::vector<std::string> wordsOf(int argc, char** argv) {
 }
 
 int run(int argc, char** argv) {
+  std::optional<EndWithoutMemory> end(std::in_place);  // CLI11 asks for memory where it promises to throw nothing
   CLI::App app("Cradle: rigid-body physics from a scene file, and pictures of it.", "cradle");
   CommandLine line;
   app.set_version_flag("--version", "cradle " CRADLE_VERSION);
@@ -357,6 +359,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return answer(app, error);
   }
+  end.reset();  // commands leave nothing half-written
   line.command();
   flushOutput();
   return 0;
