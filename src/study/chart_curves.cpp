@@ -1,4 +1,5 @@
-// Colours: M. Okabe, K. Ito, "Color Universal Design", 2008: told apart by all eyes.
+// Colours: M. Okabe, K. Ito, "Color Universal Design", 2008, and P. Tol, "Colour schemes", 2021 (muted): told apart by
+// all eyes.
 
 #include "study/chart_curves.h"
 
@@ -10,13 +11,12 @@ namespace {
 
 // gnuplot's pointtypes: filled triangle, square, circle, diamond, triangle upside down; the plan's open circles go
 // around the markers of what it chose.
-constexpr const char *kOurColor = "#0072B2", *kTextbookColor = "#56B4E9";
-constexpr std::array<CurveLook, 6> kOwnLooks = {{{kTextbookColor, 9, 1, 1.6, 1},
-                                                 {kTextbookColor, 5, 0.9, 1.6, 1},
-                                                 {kTextbookColor, 13, 1.1, 1.6, 1},
-                                                 {kTextbookColor, 11, 1, 1.6, 1},
-                                                 {kTextbookColor, 7, 0.9, 1.6, 1},
-                                                 {kOurColor, 6, 1.9, 3.5, 1}}};
+constexpr std::array<CurveLook, 6> kOwnLooks = {{{"#CC6677", 9, 1.2, 2, 1},
+                                                 {"#882255", 5, 1.1, 2, 1},
+                                                 {"#56B4E9", 13, 1.3, 2, 1},
+                                                 {"#999933", 11, 1.2, 2, 1},
+                                                 {"#332288", 7, 1.1, 2, 1},
+                                                 {"#0072B2", 6, 1.9, 3.5, 1}}};
 constexpr std::array<int, 4> kPeerMarkers = {6, 4, 8, 12};  // open circle, square, triangle, diamond
 constexpr std::array<int, 4> kPeerDashes = {1, 2, 3, 4};
 

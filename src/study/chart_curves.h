@@ -7,7 +7,7 @@
 
 namespace cradle {
 
-/// How a method is drawn by gnuplot: a colour an engine, a marker a method.
+/// How a method is drawn by gnuplot: a colour each of ours, of other engines a colour an engine and a marker a method.
 struct CurveLook {
   const char* color;
   int marker;  // pointtype

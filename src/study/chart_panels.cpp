@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kMin = 1e-17, kMax = 1e4;  // of axes: what is less or more stands on their edge
 constexpr int kSideLabels = 5;              // of an axis, at the most
+constexpr int kLegendRow = 26;              // pixels
 
 double decadeBelow(double value) {
   return std::pow(10, std::floor(std::log10(value)));
@@ -77,17 +78,6 @@ std::string uncertaintyBand(const ErrorAxis& axis, double uncertainty) {
       axis.decades.bottom, uncertainty);
 }
 
-/// An arrow to where error and cost are small, above the uncertainty.
-std::string betterArrow(const ErrorAxis& axis, double uncertainty) {
-  const double bottom = axis.decades.bottom;
-  const double lowest = std::isfinite(uncertainty) ? std::max(uncertainty, bottom) : bottom;
-  const double height = std::log(lowest / bottom) / std::log(axis.end / bottom);  // part of the panel
-  return fmt::format(
-      "set label 5 'better' at graph 0.075, graph {} center font ',13' textcolor rgb '#606060'\n"
-      "set arrow 5 from graph 0.09, graph {} to graph 0.03, graph {} linewidth 2 linecolor rgb '#909090'\n",
-      height + 0.12, height + 0.1, height + 0.04);
-}
-
 std::string blowUpStrip(const ErrorAxis& axis) {
   const double top = axis.decades.top;
   if (axis.end == top) return "";
@@ -147,11 +137,106 @@ Decades decadesOf(const std::vector<Curve>& curves, const Side& side) {
   return decades;
 }
 
+/// Places of methods in the legend: a column an engine, or of one engine columns of two rows.
+std::vector<std::pair<int, int>> legendPlaces(const std::vector<Curve>& curves) {
+  const bool isOneEngine = curves.front().engine == curves.back().engine;
+  const int rows = isOneEngine ? 2 : static_cast<int>(curves.size());  // in a column, at the most
+  std::vector<std::pair<int, int>> places;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const bool isNext = i == 0 || places.back().second + 1 == rows || curves[i].engine != curves[i - 1].engine;
+    const int column = i == 0 ? 0 : places.back().first + (isNext ? 1 : 0);
+    places.emplace_back(column, isNext ? 0 : places.back().second + 1);
+  }
+  return places;
+}
+
+int legendRows(const std::vector<Curve>& curves) {
+  int rows = 1;
+  for (const auto& [column, row] : legendPlaces(curves)) rows = std::max(rows, row + 1);
+  return rows;
+}
+
+/// Around all costs, with room at both ends.
+std::pair<double, double> costRangeOf(const std::vector<Curve>& curves, double ChartPoint::*cost, bool withBlowUps) {
+  constexpr double kRoom = 2, kLeastSpan = 150;  // an axis has two powers of ten at least
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const Curve& curve : curves)
+    for (const std::vector<ChartPoint>* points : {&curve.points, &curve.blowUps})
+      for (const ChartPoint& point : *points)
+        if ((withBlowUps || points == &curve.points) && point.*cost > 0)
+          least = std::min(least, point.*cost), most = std::max(most, point.*cost);
+  if (!(least <= most)) return {0.1, 1};
+  const double room = std::max(kRoom, std::sqrt(kLeastSpan * least / most));
+  return {least / room, most * room};
+}
+
+std::string costRange(const std::vector<Curve>& curves, double ChartPoint::*cost, bool withBlowUps) {
+  const auto [least, most] = costRangeOf(curves, cost, withBlowUps);
+  return fmt::format("set xrange [{}:{}]\n", least, most);
+}
+
+/// Where the first panel's curves go, in parts of it.
+std::vector<std::pair<double, double>> waysOf(const std::vector<Curve>& curves, const ErrorAxis& axis) {
+  constexpr int kSamples = 24;  // of the line between two points
+  const auto [least, most] = costRangeOf(curves, &ChartPoint::cpu, true);
+  const auto placeOf = [&, low = least, high = most](const ChartPoint& point) {
+    const double error = std::clamp(point.error, axis.decades.bottom, axis.decades.top);
+    return std::pair(std::log(point.cpu / low) / std::log(high / low),
+                     std::log(error / axis.decades.bottom) / std::log(axis.end / axis.decades.bottom));
+  };
+  std::vector<std::pair<double, double>> ways;
+  for (const Curve& curve : curves)
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      const auto from = placeOf(curve.points[i]), to = placeOf(curve.points[std::min(i + 1, curve.points.size() - 1)]);
+      for (int k = 0; k <= kSamples; ++k) {
+        const double share = static_cast<double>(k) / kSamples;
+        ways.emplace_back(from.first + share * (to.first - from.first),
+                          from.second + share * (to.second - from.second));
+      }
+    }
+  return ways;
+}
+
+/// An arrow to where error and cost are small, above the uncertainty and where no curve goes; none if there is no such
+/// place.
+std::string betterArrow(const std::vector<Curve>& curves, const ErrorAxis& axis, double uncertainty) {
+  constexpr double kWidth = 0.13, kHeight = 0.15;  // parts of the panel
+  const double bottom = axis.decades.bottom;
+  const double lowest = std::isfinite(uncertainty) ? std::max(uncertainty, bottom) : bottom;
+  const double least = std::log(lowest / bottom) / std::log(axis.end / bottom) + 0.01;
+  const auto ways = waysOf(curves, axis);
+  for (const double height : {least, least + 0.15, least + 0.3, least + 0.45})
+    for (const double left : {0.02, 0.2, 0.4}) {
+      const bool isFree = std::none_of(ways.begin(), ways.end(), [&](const auto& way) {
+        return way.first > left && way.first < left + kWidth && way.second > height && way.second < height + kHeight;
+      });
+      if (isFree && height + kHeight < 0.9)
+        return fmt::format(
+            "set label 5 'better' at graph {}, graph {} center font ',13' textcolor rgb '#606060'\n"
+            "set arrow 5 from graph {}, graph {} to graph {}, graph {} linewidth 2 linecolor rgb '#909090'\n",
+            left + 0.065, height + 0.12, left + 0.075, height + 0.09, left + 0.015, height + 0.03);
+    }
+  return "";
+}
+
 }  // namespace
 
 ChartLayout layoutOf(const std::vector<Curve>& curves) {
-  if (sidesOf(curves).empty()) return {960, 0.18, 0, 0, 0.28, 0.885, 0.022, 0.923, 0.965};
-  return {1320, 0.139, 0.215, 0.385, 0.475, 0.915, 0.018, 0.944, 0.974};
+  // In pixels from the bottom.
+  const bool hasSides = !sidesOf(curves).empty();
+  const int note = 24, legendTop = note + 36 + kLegendRow * (legendRows(curves) - 1), sidesBottom = legendTop + 100,
+            sidesTop = sidesBottom + 225, errorsBottom = hasSides ? sidesTop + 118 : legendTop + 96,
+            errorsTop = errorsBottom + 580, height = errorsTop + 112;
+  const auto part = [&](int place) { return static_cast<double>(place) / height; };
+  return {height,
+          part(legendTop),
+          hasSides ? part(sidesBottom) : 0,
+          hasSides ? part(sidesTop) : 0,
+          part(errorsBottom),
+          part(errorsTop),
+          part(note),
+          part(errorsTop + 38),
+          part(errorsTop + 78)};
 }
 
 std::string dataBlocks(const std::vector<Curve>& curves, double uncertainty) {
@@ -183,48 +268,49 @@ std::string errorPanels(const std::vector<Curve>& curves, double uncertainty, co
          "set lmargin at screen 0.075\nset rmargin at screen 0.495\n"
          "set ylabel 'error at the end:  max |x - x_{ref}| / (1 + |x_{ref}|)'\n"
          "set xlabel 'CPU time per simulated second (s)'\n" +
-         betterArrow(axis, uncertainty) + plotCommand(curves, "1:3", true) +
+         costRange(curves, &ChartPoint::cpu, true) + betterArrow(curves, axis, uncertainty) +
+         plotCommand(curves, "1:3", true) +
          "unset label 1\nunset label 2\nunset label 5\nunset arrow 5\nset lmargin at screen 0.565\nset rmargin at "
          "screen 0.985\nunset ylabel\n"
          "set xlabel 'evaluations of the right-hand side, whole run'\n" +
-         plotCommand(curves, "2:3", true) + "unset label\nunset arrow\nunset object\n";
+         costRange(curves, &ChartPoint::evaluations, true) + plotCommand(curves, "2:3", true) +
+         "unset label\nunset arrow\nunset object\n";
 }
 
 std::string sidePanels(const std::vector<Curve>& curves, const ChartLayout& layout) {
-  constexpr double kLeft = 0.075, kBetween = 0.315, kWidth = 0.255;  // in parts of the screen
+  constexpr double kLeft = 0.075, kRight = 0.985, kGap = 0.06;  // in parts of the screen
   std::string text = fmt::format(
       "set bmargin at screen {}\nset tmargin at screen {}\nset xlabel 'CPU time per simulated second (s)'\n",
       layout.sidesBottom, layout.sidesTop);
   const std::vector<Side> sides = sidesOf(curves);
+  if (sides.empty()) return "";
+  const double count = static_cast<double>(sides.size()), width = (kRight - kLeft - kGap * (count - 1)) / count;
+  text += costRange(curves, &ChartPoint::cpu, false);
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const Decades decades = decadesOf(curves, sides[i]);
-    const double left = kLeft + kBetween * static_cast<double>(i);
+    const double left = kLeft + (width + kGap) * static_cast<double>(i);
     text += fmt::format(
         "set lmargin at screen {}\nset rmargin at screen {}\nset yrange [{}:{}]\n{}set label 6 {} at graph 0, 1.06 "
         "font ',14'\n{}",
-        left, left + kWidth, decades.bottom, decades.top, decades.tics(kSideLabels), quotedForGnuplot(sides[i].title),
+        left, left + width, decades.bottom, decades.top, decades.tics(kSideLabels), quotedForGnuplot(sides[i].title),
         plotCommand(curves, sides[i].columns, false));
   }
   return text + "unset label\n";
 }
 
 std::string legend(const std::vector<Curve>& curves, const ChartLayout& layout) {
-  constexpr double kLeft = 0.04, kColumn = 0.192, kSample = 0.024, kRow = 0.02;  // in parts of the screen
+  constexpr double kLeft = 0.04, kColumn = 0.192, kSample = 0.024;  // in parts of the screen
   // gnuplot's own key has columns as wide as it guesses a text to be, and other guesses for other terminals.
   std::string text = fmt::format(
       "unset border\nunset tics\nunset xlabel\nunset ylabel\nunset grid\nunset logscale\n"
       "set label 'One marker a run: from each to the next, the time step is halved, or the accuracy asked for ten "
       "times finer. Crosses blew up.' at screen 0.5, {} center font ',13' textcolor rgb '#505050'\n",
       layout.note);
-  const bool isOneEngine = curves.front().engine == curves.back().engine;
-  const std::size_t rows = isOneEngine ? 2 : curves.size();  // in a column, at the most
-  int column = -1;
-  std::size_t row = 0;
+  const std::vector<std::pair<int, int>> places = legendPlaces(curves);
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    const bool isNext = i == 0 || row + 1 == rows || curves[i].engine != curves[i - 1].engine;
-    column += isNext ? 1 : 0;
-    row = isNext ? 0 : row + 1;
-    const double left = kLeft + kColumn * column, height = layout.legendTop - kRow * static_cast<double>(row);
+    const auto [column, row] = places[i];
+    const double left = kLeft + kColumn * column,
+                 height = layout.legendTop - static_cast<double>(kLegendRow * row) / layout.height;
     const CurveLook& look = curves[i].look;
     text += fmt::format(
         "set arrow from screen {0}, {2} to screen {1}, {2} nohead dashtype {3} linewidth {4} linecolor rgb '{5}'\n"

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "core/error.h"
 #include "study/gnuplot.h"
@@ -33,6 +35,33 @@ WorkPrecisionChart sampleChart() {
   chart.rows = {rowOf("rk4", 0.5, std::nan("")), rowOf("rk4", 0.25, std::nan(""))};
   for (int i = 0; i < 5; ++i) chart.rows.push_back(rowOf("rk4", 0.125 / (1 << i), 0.25 * std::pow(16, -i)));
   return chart;
+}
+
+/// Where the word "better" stands, in parts of the panel; nothing if it does not.
+std::optional<std::pair<double, double>> placeOfBetter(const std::string& commands) {
+  const std::string begin = "set label 5 'better' at graph ";
+  const std::size_t place = commands.find(begin);
+  if (place == std::string::npos) return std::nullopt;
+  std::pair<double, double> found;
+  if (std::sscanf(commands.c_str() + place + begin.size(), "%lf, graph %lf", &found.first, &found.second) != 2)
+    return std::nullopt;
+  return found;
+}
+
+TEST(WorkPrecisionChart, BetterStandsWhereNoCurveGoes) {
+  WorkPrecisionChart chart = sampleChart();
+  const auto usual = placeOfBetter(chartCommands(chart, ChartFormat::svg));
+  ASSERT_TRUE(usual);
+  EXPECT_LT(usual->first, 0.1);
+  // A closed form: one run, cheap and exact, in the lower left corner.
+  StudyRow exact = rowOf("plan", 1, 2e-8);
+  exact.cpuSecondsPerSimulatedSecond = 1e-6;
+  chart.rows.push_back(exact);
+  chart.rows.push_back(exact);
+  chart.rows.back().error = 1e-5;  // and something above it
+  const auto moved = placeOfBetter(chartCommands(chart, ChartFormat::svg));
+  ASSERT_TRUE(moved);
+  EXPECT_GT(std::hypot(moved->first - usual->first, moved->second - usual->second), 0.1);
 }
 
 TEST(WorkPrecisionChart, BlowUpsStandWhereSuchARunWould) {
