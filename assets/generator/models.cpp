@@ -113,16 +113,15 @@ Surface lPrism() {
   return surface;
 }
 
-Surface torus() {
-  constexpr double kRadius = 0.12, kTubeRadius = 0.045;  // m
-  constexpr std::size_t kSections = 64, kSides = 32;
+/// A tube around y, divided into that many sections of that many sides; lengths in m.
+Surface tubeRing(const char* name, double radius, double tubeRadius, std::size_t count, std::size_t sides) {
   std::vector<Section> sections;
-  for (std::size_t i = 0; i < kSections; ++i) {
-    const Vec3 outward = aroundY(2 * pi * fraction(i, kSections));
-    sections.push_back({kRadius * outward, outward, -Vec3::UnitY(), kTubeRadius});
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 outward = aroundY(2 * pi * fraction(i, count));
+    sections.push_back({radius * outward, outward, -Vec3::UnitY(), tubeRadius});
   }
-  Surface surface{"Torus", 0, {}, {}};
-  addTube(sections, kSides, true, surface);
+  Surface surface{name, 0, {}, {}};
+  addTube(sections, sides, true, surface);
   return surface;
 }
 
@@ -247,10 +246,11 @@ std::vector<Model> allModels() {
           cradleFrame(),
           {"gear.3ds", {{"Brass", {196, 160, 82}}}, {gear()}},
           {"l_prism.3ds", {{"Teal", {42, 132, 138}}}, {lPrism()}},
+          {"ring.3ds", {{"Brass", {196, 160, 82}}}, {tubeRing("Ring", 0.5, 0.025, 96, 20)}},
           {"rocks.3ds", {{"Basalt", {110, 108, 104}}}, rocks()},
           {"spinning_top.3ds", {{"Cherry", {168, 58, 42}}}, {spinningTop()}},
           {"t_handle.3ds", {{"Steel", {168, 176, 188}}}, {tHandle()}},
-          {"torus.3ds", {{"Coral", {222, 98, 76}}}, {torus()}},
+          {"torus.3ds", {{"Coral", {222, 98, 76}}}, {tubeRing("Torus", 0.12, 0.045, 64, 32)}},
           {"torus_knot.3ds", {{"Indigo", {76, 84, 178}}}, {torusKnot()}},
           {"voussoir.3ds", {{"Sandstone", {206, 184, 146}}}, {voussoir()}}};
 }

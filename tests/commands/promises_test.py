@@ -15,7 +15,7 @@ CONDITION_OF = {"edges touch and press": ("no edges of", "no rim of", "no edge o
                 "contacts slide so slowly": "no contact", "friction jams": "no contact", "a cylinder tips over its rim": "no cylinder",
                 "too many contacts press at once": "no more than 24 redundant", "something touches within a thousandth": "nothing touches", "contacts change more": "contacts change at most"}
 GIVEN_UP = r"not promised from (\S+) s on: (.*) \((.*)\); contact is resolved"
-NOTHING_TOUCHES = ["coupled_pendulums", "double_pendulum", "hanging_chain", "lagrange_top", "rod_pendulum", "rope_slack_taut",
+NOTHING_TOUCHES = ["coupled_pendulums", "double_pendulum", "gimbal_lock", "hanging_chain", "lagrange_top", "rod_pendulum", "rope_slack_taut",
                    "spinning_handle", "suspended_model_rod", "two_models_one_spring"]
 LINKAGES = ["four_bar", "piston", "coupled_pendulums_rod"]
 FEW_BALLS = ["newtons_cradle", "hard_sphere_gas"]

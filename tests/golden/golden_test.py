@@ -31,6 +31,7 @@ FRAMES = {  # scene: frames that are drawn; states are kept for these too
     "bouncing_balls": (0, 30, 100, 250),
     "sliding_blocks": (0, 75, 145),
     "spinning_handle": (0, 200, 400),
+    "gimbal_lock": (0, 50, 200),
     "gears_fall": (0, 30, 60, 170),
     "double_pendulum": (0, 150, 400),
     "triple_pendulum": (0, 150, 400),

@@ -11,6 +11,7 @@
 
 #include "commands/film_view.h"
 #include "image/png.h"
+#include "overlay/captions.h"
 #include "render/renderer.h"
 
 namespace cradle {
@@ -40,7 +41,11 @@ bool check(const std::string& trajectory, const std::filesystem::path& folder, c
       const Image changed = changing.render(frame, camera.at(frame));
       whole.forgetPicture();
       const Image picture = whole.render(frame, camera.at(frame));
-      if (number == first) writePng(picture, (folder / fmt::format("frame_{:06}.png", number)).string());
+      if (number == first) {
+        Image captioned = picture;
+        drawCaptions(source.scene(), frame, {camera.at(frame), kWidth, kHeight}, captioned);
+        writePng(captioned, (folder / fmt::format("frame_{:06}.png", number)).string());
+      }
       const long different = differingPixels(changed, picture);
       if (different > 0) fmt::print("{}, frame {}: {} pixels differ\n", trajectory, number, different);
       same = same && different == 0;

@@ -75,6 +75,10 @@ TEST(Assets, TorusHasTheVolumeOfItsFacets) {
   expectVolume(loadAsset("torus.3ds", "mesh"), 64 * std::sin(2 * pi / 64) * 0.12 * polygonArea(32, 0.045), kFloat);
 }
 
+TEST(Assets, RingHasTheVolumeOfItsFacets) {
+  expectVolume(loadAsset("ring.3ds", "mesh"), 96 * std::sin(2 * pi / 96) * 0.5 * polygonArea(20, 0.025), kFloat);
+}
+
 TEST(Assets, TorusKnotHasTheVolumeOfATube) {
   const LoadedModel knot = loadAsset("torus_knot.3ds", "mesh");
   // Length of the curve by the trapezoidal rule, exact to rounding for a periodic function.
