@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/output_path.h"
 #include "mesh/assemble_model.h"
+#include "mesh/fill_holes.h"
 #include "mesh/import_mesh.h"
 #include "mesh/mesh_library.h"
 #include "mesh/solid.h"
@@ -79,15 +80,21 @@ std::vector<LoadedModel> assembleObjects(const std::string& path, std::vector<Im
   return objects;
 }
 
+void mend(LoadedModel& loaded) {
+  fillHoles(loaded);
+  turnPartsOutwards(loaded);
+}
+
 /// All objects as one model. Which way a part must face depends on those around it, of other objects too; objects that
 /// do not make a closed surface together may still be closed each.
 LoadedModel joinOutwards(const std::string& name, std::vector<LoadedModel> objects) {
   LoadedModel joined = joinModels(name, objects);
+  fillHoles(joined);
   if (hasMatchingEdges(joined.model.solid)) {
     turnPartsOutwards(joined);
     return joined;
   }
-  for (LoadedModel& object : objects) turnPartsOutwards(object);
+  for (LoadedModel& object : objects) mend(object);
   return joinModels(name, objects);
 }
 
@@ -99,12 +106,12 @@ LoadedModel chosenModel(const MeshReference& reference, std::vector<ImportedObje
   if (reference.object.empty() && objects.size() > 1)
     return joinOutwards(fs::path(reference.path).stem().string(), std::move(objects));
   if (reference.object.empty()) {
-    turnPartsOutwards(objects.front());
+    mend(objects.front());
     return std::move(objects.front());
   }
   for (LoadedModel& object : objects)
     if (object.model.name == reference.object) {
-      turnPartsOutwards(object);
+      mend(object);
       return std::move(object);
     }
   throw Error(ErrorKind::mesh, reference.path,
@@ -139,7 +146,7 @@ std::string keyOf(const std::string& path) {
 
 std::vector<LoadedModel> loadObjects(const std::string& path, double scale, ModelParts parts) {
   std::vector<LoadedModel> objects = assembleObjects(path, importObjects(path), scale, parts);
-  for (LoadedModel& object : objects) turnPartsOutwards(object);
+  for (LoadedModel& object : objects) mend(object);
   return objects;
 }
 
