@@ -15,6 +15,7 @@ constexpr double kWidth = 0.62, kHeight = 0.30, kFromEdge = 0.03, kPadding = 0.0
 constexpr double kText = 0.028, kCurve = 0.0042, kRule = 0.0016;
 constexpr double kValueColumn = 0.105;  // of the numbers beside the curves
 constexpr double kLineHeight = 1.45;    // in em
+constexpr double kBesideRule = 0.4;     // em, from a value's number to the curves
 constexpr double kHeadroom = 0.06;      // of the range of values, above and below
 constexpr int kTimeNumbers = 5, kValueNumbers = 4;
 constexpr double kTickRounding = 1e-9;  // of a step: an end that is a round number but for rounding has its rule
@@ -42,6 +43,29 @@ std::pair<double, double> rangeOf(const PlotContent& content) {
   return {low - margin, high + margin};
 }
 
+std::string numberText(double number, double step) {
+  if (std::abs(number) < step / 2) return "0";
+  return std::abs(number) >= 1e5 || step < 1e-3 ? fmt::format("{:.3g}", number) : fmt::format("{:g}", number);
+}
+
+/// A number beside, or below, its rule.
+struct PlotLabel {
+  double number;
+  std::string text;
+};
+
+std::vector<PlotLabel> labelsOf(double low, double high, int wanted) {
+  const std::vector<double> numbers = roundNumbers(low, high, wanted);
+  const double step = numbers.size() > 1 ? numbers[1] - numbers[0] : 1;
+  std::vector<PlotLabel> labels;
+  for (const double number : numbers) labels.push_back({number, numberText(number, step)});
+  return labels;
+}
+
+std::vector<PlotLabel> valueLabels(const PlotArea& area) {
+  return labelsOf(area.lowestValue, area.highestValue, kValueNumbers);
+}
+
 Layout layOut(const PlotContent& content, int width, int height) {
   Layout layout;
   const double unit = height, padding = kPadding * unit;
@@ -49,43 +73,43 @@ Layout layOut(const PlotContent& content, int width, int height) {
   const double line = kLineHeight * layout.text.em;
   std::tie(layout.panelTopLeft, layout.panelBottomRight) = plotPanelAt(content.corner, width, height);
   PlotArea& area = layout.area;
-  area.left = std::round(layout.panelTopLeft.x + padding + kValueColumn * unit);
   area.right = std::round(layout.panelBottomRight.x - 2 * padding);
   area.top = std::round(layout.panelTopLeft.y + padding + line);
   area.bottom = std::round(layout.panelBottomRight.y - padding / 2 - line);
   area.firstTime = content.times.front();
   area.lastTime = std::max(content.times.back(), area.firstTime + 1e-12 * std::max(1.0, area.firstTime));
   std::tie(area.lowestValue, area.highestValue) = rangeOf(content);
+  double column = kValueColumn * unit;  // wider for numbers with an exponent
+  for (const PlotLabel& label : valueLabels(area))
+    column = std::max(column, textWidth(label.text, layout.text) + kBesideRule * layout.text.em);
+  area.left = std::round(layout.panelTopLeft.x + padding + column);
   return layout;
-}
-
-std::string numberText(double number, double step) {
-  if (std::abs(number) < step / 2) return "0";
-  return std::abs(number) >= 1e5 || step < 1e-3 ? fmt::format("{:.3g}", number) : fmt::format("{:g}", number);
 }
 
 void drawRules(Canvas& canvas, const Layout& layout) {
   const PlotArea& area = layout.area;
   const double thickness = std::max(kRule * canvas.height(), 1.0);
   const auto rule = [&](const PicturePoint& low, const PicturePoint& high) { canvas.rectangle(low, high, 0, kRules); };
-  const auto times = roundNumbers(area.firstTime, area.lastTime, kTimeNumbers);
-  const double timeStep = times.size() > 1 ? times[1] - times[0] : 1;
-  for (const double time : times) {
-    const double x = std::round(area.at(time, 0).x);
-    const bool isLast = time == times.back();
-    const std::string text = numberText(time, timeStep) + (isLast ? " s" : "");
+  // From the last one, which has the unit, to the first, leaving out those without room.
+  std::vector<PlotLabel> times = labelsOf(area.firstTime, area.lastTime, kTimeNumbers);
+  double end = layout.panelBottomRight.x - layout.text.em / 2;  // of the room
+  for (std::size_t i = times.size(); i-- > 0;) {
+    const double x = std::round(area.at(times[i].number, 0).x);
     rule({x, area.top}, {x + thickness, area.bottom});
-    const double width = textWidth(text, layout.text), start = isLast ? area.right - width : x - width / 2;
+    const bool isLast = i + 1 == times.size();
+    const std::string text = times[i].text + (isLast ? " s" : "");
+    const double width = textWidth(text, layout.text);
+    const double start = isLast ? std::min(x - width / 2, end - width) : x - width / 2;
+    if (start + width > end) continue;
     drawText(canvas, text, layout.text, {start, area.bottom + 1.05 * layout.text.em}, kWords);
+    end = start - layout.text.em / 2;
   }
-  const auto values = roundNumbers(area.lowestValue, area.highestValue, kValueNumbers);
-  const double valueStep = values.size() > 1 ? values[1] - values[0] : 1;
-  for (const double value : values) {
-    const double y = std::round(area.at(0, value).y);
-    const std::string text = numberText(value, valueStep);
+  for (const PlotLabel& label : valueLabels(area)) {
+    const double y = std::round(area.at(0, label.number).y);
     rule({area.left, y}, {area.right, y + thickness});
-    drawText(canvas, text, layout.text,
-             {area.left - 0.4 * layout.text.em - textWidth(text, layout.text), y + layout.text.ascent / 2}, kWords);
+    const double width = textWidth(label.text, layout.text);
+    const double baseline = std::max(y + layout.text.ascent / 2, area.top + layout.text.ascent);  // below the title
+    drawText(canvas, label.text, layout.text, {area.left - kBesideRule * layout.text.em - width, baseline}, kWords);
   }
 }
 

@@ -114,21 +114,66 @@ TEST(PlotPanel, ZeroHasNoSign) {
   EXPECT_LT(brightest(start - 2 * size.em, start - 1), 60);
 }
 
+/// The panel takes the upper right corner, and nothing is drawn beside it.
+void expectPanel(const PlotContent& content, int width, int height) {
+  const Image image = drawn(content, content.times.size() - 1, width, height);
+  int left = width, top = height, right = 0, bottom = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (image.at(x, y)[0] + image.at(x, y)[1] + image.at(x, y)[2] > 0) {
+        left = std::min(left, x), right = std::max(right, x + 1);
+        top = std::min(top, y), bottom = std::max(bottom, y + 1);
+      }
+  const double edge = std::round(0.03 * height);
+  EXPECT_EQ(right, width - edge);
+  EXPECT_EQ(top, edge);
+  EXPECT_EQ(bottom, edge + std::round(0.3 * height));
+  EXPECT_NEAR(right - left, std::min(0.62 * height, width - 0.06 * height), 1);
+}
+
 TEST(PlotPanel, LiesInTheUpperRightCornerAndLeavesTheRestAlone) {
-  for (const auto& [width, height] : {std::pair(1280, 720), std::pair(640, 360), std::pair(300, 600)}) {
-    const Image image = drawn(waveAndLine(), 240, width, height);
-    int left = width, top = height, right = 0, bottom = 0;
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
-        if (image.at(x, y)[0] + image.at(x, y)[1] + image.at(x, y)[2] > 0) {
-          left = std::min(left, x), right = std::max(right, x + 1);
-          top = std::min(top, y), bottom = std::max(bottom, y + 1);
-        }
-    const double edge = std::round(0.03 * height);
-    EXPECT_EQ(right, width - edge);
-    EXPECT_EQ(top, edge);
-    EXPECT_EQ(bottom, edge + std::round(0.3 * height));
-    EXPECT_NEAR(right - left, std::min(0.62 * height, width - 0.06 * height), 1);
+  for (const auto& [width, height] : {std::pair(1280, 720), std::pair(640, 360), std::pair(300, 600)})
+    expectPanel(waveAndLine(), width, height);
+}
+
+/// Numbers with an exponent are wider than others: the curves begin further to the right.
+TEST(PlotPanel, WideNumbersStayInIt) {
+  PlotContent content = waveAndLine();
+  for (PlotCurve& curve : content.curves)
+    for (double& value : curve.values) value *= 1.7e-5;
+  const PlotArea usual = plotAreaOf(waveAndLine(), kWidth, kHeight), wide = plotAreaOf(content, kWidth, kHeight);
+  EXPECT_GT(wide.left, usual.left);
+  EXPECT_EQ(wide.right, usual.right);
+  expectPanel(content, kWidth, kHeight);
+}
+
+/// The columns (pixels) of the row of times in which something light is drawn, as runs that are less than `gap` apart.
+std::vector<std::pair<int, int>> timesOf(const PlotContent& content, int gap) {
+  const Image image = drawn(content, 0);
+  const PlotArea area = plotAreaOf(content, kWidth, kHeight);
+  const int first = static_cast<int>(area.bottom) + 3, last = first + 8;
+  std::vector<std::pair<int, int>> runs;
+  for (int x = 0; x < kWidth; ++x) {
+    bool isLight = false;
+    for (int y = first; y < last; ++y) isLight = isLight || image.at(x, y)[0] > 150;
+    if (!isLight) continue;
+    if (runs.empty() || x - runs.back().second > gap) runs.emplace_back(x, x);
+    runs.back().second = x;
+  }
+  return runs;
+}
+
+/// 0.04 would run into "0.05 s": it is left out, like what stands too near to others of any film.
+TEST(PlotPanel, TimesDoNotRunIntoEachOther) {
+  for (const double duration : {0.051, 0.055, 1.0, 2.2, 9.9, 42.0, 810.3, 1234.5}) {
+    PlotContent content = waveAndLine();
+    for (double& time : content.times) time *= duration / 4;
+    const TextSize text = crispTextSize(0.028 * kHeight);
+    const int gap = static_cast<int>(0.45 * text.em);
+    const auto runs = timesOf(content, gap);
+    EXPECT_GE(runs.size(), 3u) << duration;
+    const double widest = textWidth("0.0000 s", text);
+    for (const auto& [begin, end] : runs) EXPECT_LT(end - begin, widest) << duration;
   }
 }
 
