@@ -28,8 +28,8 @@ float alternating(float x) {
 }
 
 vec3 painted(vec3 base) {
-  // A little inside: faces of boxes lie where cells end.
-  vec3 place = 0.999 * bodyPlace / pattern.w;
+  // A little inside, and aside: faces lie where cells end.
+  vec3 place = 0.999 * bodyPlace / pattern.w + 0.002;
   float share = 0.0;
   if (patternKind < 1.5) {
     share = alternating(place.x);

@@ -145,7 +145,7 @@ void addPlot(CLI::App& app, CommandLine& line) {
   auto* plot = addCommand(app, line, "plot", "Chart quantities of runs over time",
                           "cradle plot a.sqlite b.sqlite -o heights.svg --quantity height:ball\n"
                           "  cradle plot scenes/rod_pendulum.json -o methods.png --methods explicitEuler,rk4,plan "
-                          "--time-step 0.01 --quantity energyError,phase:bob",
+                          "--time-step 0.01 --quantity energyError,phase:single",
                           [&] {
                             line.plot.scene = line.simulation.scene;
                             line.plot.methods = line.methods;

@@ -41,17 +41,20 @@ class Part {
     const TrajectoryReader& reader = source.reader();
     const std::string& method = reader.header().method;
     heading_ = printableLine(method.substr(0, method.find('\n')));
-    if (reader.hasFailed()) ending_ = fmt::format(": unstable at {:.3g} s", reader.frameTimes().back());
+    if (reader.hasFailed()) ending_ = fmt::format(": unstable after {:.3g} s", reader.frameTimes().back());
   }
 
   /// With its heading above it.
   const Image& draw(long frame) {
-    const long last = source.pictureCount() - 1;
+    const long last = lastPicture();
     const bool isOver = frame > last && !ending_.empty();
     if (frame <= last) picture_ = drawer_->draw(frame);
     if (frame <= last || isOver) image_ = withHeading(heading_ + (frame >= last ? ending_ : ""));
     return image_;
   }
+
+  /// The last state is the end of a run that failed, and no picture of others.
+  long lastPicture() const { return source.reader().hasFailed() ? source.frameCount() - 1 : source.pictureCount() - 1; }
 
   TrajectorySource source;
   PictureOrder order;
@@ -94,12 +97,15 @@ bool haveSameBodies(std::deque<Part>& parts) {
   });
 }
 
-/// Of the same bodies: a view that what flies away does not make small.
+/// Of the same bodies: that of the run that stays the smallest among those that last the longest.
 std::optional<View> commonView(std::deque<Part>& parts) {
   const auto namesCamera = [](Part& part) { return part.source.scene().camera.has_value(); };
   if (!haveSameBodies(parts) || std::any_of(parts.begin(), parts.end(), namesCamera)) return std::nullopt;
+  long longest = 0;
+  for (Part& part : parts) longest = std::max(longest, part.source.pictureCount());
   std::optional<View> smallest;
   for (Part& part : parts) {
+    if (part.source.pictureCount() < longest) continue;
     const View view = viewOf(part.source, part.order.size.width, part.order.size.height);
     if (!smallest || view.size() < smallest->size()) smallest = view;
   }
@@ -162,7 +168,7 @@ void makeSideBySideFilm(const std::vector<std::string>& inputs, const std::strin
   long count = 0;
   for (Part& part : parts) {
     part.source.simulateUntilItFails();
-    count = std::max(count, part.source.pictureCount());
+    count = std::max(count, part.lastPicture() + 1);
   }
   const std::optional<View> view = commonView(parts);
   for (Part& part : parts) part.prepare(view);

@@ -63,7 +63,7 @@ std::vector<std::string> runNames(const std::vector<RunOrigin>& origins, std::si
 }
 
 std::string shownName(const std::string& name, const TrajectoryReader& run) {
-  return run.hasFailed() ? fmt::format("{} (unstable at {:.3g} s)", name, run.frameTimes().back()) : name;
+  return run.hasFailed() ? fmt::format("{} (unstable after {:.3g} s)", name, run.frameTimes().back()) : name;
 }
 
 std::vector<RunOrigin> originsOf(const std::vector<std::string>& inputs, const PlotOptions& options) {
@@ -108,6 +108,10 @@ void plotRuns(const std::vector<std::string>& runs, const std::string& output, c
     for (std::size_t i = 0; i < sources.size(); ++i)
       requireQuantity(quantity, {i < names.size() ? names[i] : "the reference", sources[i].scene()});
   for (TrajectorySource& source : sources) source.simulateUntilItFails();
+
+  if (!options.reference.empty() && sources.back().reader().hasFailed())
+    warn(fmt::format("{}: the reference became unstable after {:.3g} s: no errors are known from there on",
+                     options.reference, sources.back().reader().frameTimes().back()));
 
   std::vector<PlottedRun> shown;
   for (std::size_t i = 0; i < origins.size(); ++i)

@@ -80,21 +80,21 @@ std::vector<LoadedModel> assembleObjects(const std::string& path, std::vector<Im
   return objects;
 }
 
-void mend(LoadedModel& loaded) {
-  fillHoles(loaded);
+void mend(bool fillsHoles, LoadedModel& loaded) {
+  if (fillsHoles) fillHoles(loaded);
   turnPartsOutwards(loaded);
 }
 
 /// All objects as one model. Which way a part must face depends on those around it, of other objects too; objects that
 /// do not make a closed surface together may still be closed each.
-LoadedModel joinOutwards(const std::string& name, std::vector<LoadedModel> objects) {
+LoadedModel joinOutwards(const std::string& name, bool fillsHoles, std::vector<LoadedModel> objects) {
   LoadedModel joined = joinModels(name, objects);
-  fillHoles(joined);
+  if (fillsHoles) fillHoles(joined);
   if (hasMatchingEdges(joined.model.solid)) {
     turnPartsOutwards(joined);
     return joined;
   }
-  for (LoadedModel& object : objects) mend(object);
+  for (LoadedModel& object : objects) mend(fillsHoles, object);
   return joinModels(name, objects);
 }
 
@@ -104,14 +104,14 @@ LoadedModel chosenModel(const MeshReference& reference, std::vector<ImportedObje
   std::vector<LoadedModel> objects =
       assembleObjects(reference.path, std::move(imported), reference.scale, ModelParts::solidAndDrawn);
   if (reference.object.empty() && objects.size() > 1)
-    return joinOutwards(fs::path(reference.path).stem().string(), std::move(objects));
+    return joinOutwards(fs::path(reference.path).stem().string(), reference.fillsHoles, std::move(objects));
   if (reference.object.empty()) {
-    mend(objects.front());
+    mend(reference.fillsHoles, objects.front());
     return std::move(objects.front());
   }
   for (LoadedModel& object : objects)
     if (object.model.name == reference.object) {
-      mend(object);
+      mend(reference.fillsHoles, object);
       return std::move(object);
     }
   throw Error(ErrorKind::mesh, reference.path,
@@ -146,7 +146,7 @@ std::string keyOf(const std::string& path) {
 
 std::vector<LoadedModel> loadObjects(const std::string& path, double scale, ModelParts parts) {
   std::vector<LoadedModel> objects = assembleObjects(path, importObjects(path), scale, parts);
-  for (LoadedModel& object : objects) mend(object);
+  for (LoadedModel& object : objects) mend(true, object);
   return objects;
 }
 

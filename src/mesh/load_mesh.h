@@ -16,6 +16,7 @@ struct MeshReference {
   std::string object;  // name of one object of the file; empty: all objects are one body
   double scale = 1;    // file's units to metres, > 0
   UpAxis upAxis = UpAxis::ofFormat;
+  bool fillsHoles = false;  // small ones, of what needs a volume
 };
 
 /// A model with what had to be mended on the way.
@@ -28,8 +29,8 @@ struct LoadedModel {
 enum class ModelParts { solidAlone, solidAndDrawn };
 
 /// All objects of a mesh file (.3ds, .obj, .ply, .stl, .gltf, .glb ...; Z-up files of 3ds come out Y up), node
-/// transforms applied in double, `scale` applied. Throws Error(mesh) if the file is missing, unreadable, over the size
-/// caps, has no triangles, non-finite vertices or indices out of range.
+/// transforms applied in double, `scale` applied, small holes filled. Throws Error(mesh) if the file is missing,
+/// unreadable, over the size caps, has no triangles, non-finite vertices or indices out of range.
 std::vector<LoadedModel> loadObjects(const std::string& path, double scale,
                                      ModelParts parts = ModelParts::solidAndDrawn);
 

@@ -23,7 +23,9 @@ const Ink kCaptionPanel{{18, 22, 30}, 0.82}, kCaptionWords{{255, 255, 255}, 1}, 
     kCardGround{{18, 22, 30}, 1}, kSubtitle{{176, 184, 196}, 1};
 
 /// Lines of words that are at most so wide (pixels); a word that is wider has a line of its own, and is cut.
-std::vector<std::string> brokenText(const std::string& text, const TextSize& size, double width) {
+std::vector<std::string> brokenText(std::string text, const TextSize& size, double width) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
   std::vector<std::string> lines;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());

@@ -76,6 +76,12 @@ std::optional<ModelFacts> load(const BodyDraft& draft, SceneDraft& scene, const 
   }
 }
 
+/// Whether a body has no mass unless its mesh encloses a volume.
+bool needsVolume(const BodyDraft& draft) {
+  return draft.body.motion == Motion::dynamic && draft.massFrom == MassFrom::solid &&
+         !(draft.mass && draft.inertiaTensor);
+}
+
 // A body that moves has a volume, or a hull or a shell that gives its mass, or the mass itself, if forces move it.
 bool canMove(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults) {
   if (facts.isSolid) return true;
@@ -219,9 +225,14 @@ void attachModels(SceneDraft& draft, const ModelSource& models, FaultList& textF
   ModelTable table;
   for (BodyDraft& body : draft.bodies) {
     if (!body.meshField) continue;
-    const std::string name = modelName(body.mesh);
-    if (!table.contains(name)) table.emplace(name, load(body, draft, models, faults));
-    if (auto& facts = table.at(name)) complete(body, *facts, draft, faults);
+    const auto factsOf = [&]() -> std::optional<ModelFacts>& {
+      const std::string name = modelName(body.mesh);
+      if (!table.contains(name)) table.emplace(name, load(body, draft, models, faults));
+      return table.at(name);
+    };
+    const std::optional<ModelFacts>& asIs = factsOf();
+    body.mesh.fillsHoles = asIs && !asIs->isClosed && needsVolume(body);
+    if (auto& facts = factsOf()) complete(body, *facts, draft, faults);
   }
 }
 

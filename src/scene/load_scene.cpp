@@ -50,8 +50,8 @@ SceneDraft parseText(const JsonValue& document, FaultList& faults) {
 
 std::string modelName(const MeshReference& reference) {
   constexpr std::array kUp = {"", "^x", "^y", "^z"};
-  return fmt::format("{}#{}@{}{}", reference.path, reference.object, reference.scale,
-                     kUp[static_cast<std::size_t>(reference.upAxis)]);
+  return fmt::format("{}#{}@{}{}{}", reference.path, reference.object, reference.scale,
+                     kUp[static_cast<std::size_t>(reference.upAxis)], reference.fillsHoles ? "+filled" : "");
 }
 
 ModelSource modelFilesBeside(const std::string& scenePath, const std::string& assetRoot) {
@@ -66,7 +66,9 @@ ModelSource modelFilesBeside(const std::string& scenePath, const std::string& as
     if (!root.empty() && !isBelow(path, root))
       throw Error(ErrorKind::mesh, path,
                   fmt::format("is not below {}, and no other meshes are allowed here", root.string()));
-    return library->load({path, reference.object, reference.scale, reference.upAxis});
+    MeshReference onDisk = reference;
+    onDisk.path = path;
+    return library->load(onDisk);
   };
 }
 

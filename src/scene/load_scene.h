@@ -11,7 +11,8 @@ namespace cradle {
 /// the scene file's own, not yet resolved. Throws Error(mesh) if there is no such model.
 using ModelSource = std::function<LoadedModel(const MeshReference&)>;
 
-/// Name of the model in Scene::models and in trajectories: "path#object@scale", the path as the scene file has it.
+/// Name of the model in Scene::models and in trajectories: "path#object@scale", the path as the scene file has it,
+/// "^z" behind that with an axis that the scene names, and "+filled" where holes may be filled.
 std::string modelName(const MeshReference& reference);
 
 /// Reads models from files; relative paths start from the folder of the scene file. Files must be below `assetRoot`,

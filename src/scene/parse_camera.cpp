@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "math/rotation.h"
 #include "scene/parse_pose.h"
 
 namespace cradle {
@@ -113,7 +114,9 @@ void parseCamera(ObjectReader& root, SceneDraft& draft) {
   Camera& camera = draft.scene.camera.emplace();
   camera.where = faults.where(field->place(), field->pointer);
   ObjectReader reader(*field, faults);
-  camera.position = reader.vector("position", kCoordinates, "m", camera.position);
+  const Quat worldFromUpright = rotationBetween(Vec3::UnitY(), upOf(draft.scene));
+  camera.target = worldFromUpright * camera.target;
+  camera.position = reader.vector("position", kCoordinates, "m", worldFromUpright * camera.position);
   camera.up = reader.direction("up", upOf(draft.scene));
   camera.verticalFieldOfView =
       kRadiansPerDegree * reader.number("verticalFieldOfViewDegrees", kFieldsOfView, "degrees", 40);

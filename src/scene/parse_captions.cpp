@@ -11,10 +11,10 @@ constexpr Range kCardSeconds{0.1, 60};  // s
 std::string requireWords(ObjectReader& reader, const char* key) {
   const auto field = reader.require(key);
   if (!field) return "";
-  const std::string words = readName(*field, reader.faults()).value_or("");
-  if (std::holds_alternative<std::string>(field->value->content) && words.find_first_not_of(' ') == std::string::npos)
+  const auto words = readName(*field, reader.faults());
+  if (words && words->find_first_not_of(' ') == std::string::npos)
     addFault(reader.faults(), *field, fmt::format("{} is empty; give the words to show", key));
-  return words;
+  return words.value_or("");
 }
 
 Caption parseCaption(const Field& field, const SceneDraft& draft, FaultList& faults) {

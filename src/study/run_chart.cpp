@@ -32,10 +32,22 @@ ValueRange valueRange(const RunPanel& panel) {
   return range;
 }
 
+/// Around all curves: gnuplot would leave out what has no values, and fail where nothing has.
+std::string abscissaCommands(const RunPanel& panel) {
+  ValueRange range;
+  for (const QuantityCurve& curve : panel.curves)
+    for (const double x : curve.x) range.include(x);
+  const bool isPhase = panel.axes.x != "time (s)";
+  if (range.isEmpty() || !(range.low < range.high)) return "set xrange [0:1]\n";
+  const double margin = isPhase ? kMargin * (range.high - range.low) : 0;
+  return fmt::format("set xrange [{}:{}]\n", range.low - margin, range.high + margin);
+}
+
 std::string panelAxes(const RunPanel& panel) {
   std::string text = fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\n", quotedForGnuplot(panel.axes.x),
                                  quotedForGnuplot(panel.axes.y));
   const ValueRange range = valueRange(panel);
+  text += abscissaCommands(panel);
   if (panel.axes.isLogarithmic)
     return text + "set logscale y\nset format y '10^{%T}'\nset yrange [*:*]\n" +
            (range.isEmpty() ? "set yrange [1e-17:1]\n" : "");
@@ -81,10 +93,15 @@ std::string lineStyle(std::size_t name) {
                      kChartColors.at(name % kChartColors.size()));
 }
 
+bool hasValues(const QuantityCurve& curve) {
+  return std::any_of(curve.y.begin(), curve.y.end(), [](double value) { return std::isfinite(value); });
+}
+
 std::string panelCommand(std::size_t number, const RunPanel& panel, const std::vector<std::string>& names,
                          bool hasLegend) {
   std::string text;
   for (std::size_t j = 0; j < panel.curves.size(); ++j) {
+    if (!hasValues(panel.curves[j])) continue;
     const auto name = std::find(names.begin(), names.end(), panel.curves[j].name) - names.begin();
     text += fmt::format("{}$curve{}_{} using 1:2 {} notitle", text.empty() ? "plot " : ", ", number, j,
                         lineStyle(static_cast<std::size_t>(name)));
@@ -94,6 +111,7 @@ std::string panelCommand(std::size_t number, const RunPanel& panel, const std::v
           "rgb '{}' notitle",
           number, j, kChartColors.at(static_cast<std::size_t>(name) % kChartColors.size()));
   }
+  if (text.empty()) text = "plot NaN notitle";  // errors may all be zero
   for (std::size_t i = 0; i < names.size() && hasLegend; ++i)
     text += fmt::format(", NaN {} title {} noenhanced", lineStyle(i), quotedForGnuplot(names[i]));
   return text + "\n";
@@ -118,7 +136,7 @@ std::string runChartCommands(const std::string& title, const std::vector<RunPane
   std::string text = fmt::format(
       "set multiplot\nset border linecolor rgb '#404040'\nset tics nomirror\n"
       "set grid xtics ytics linecolor rgb '#d0d0d0' linewidth 1 dashtype 1\n"
-      "set label 1 {} at screen 0.5, {} center font ',22' noenhanced\nset lmargin screen 0.09\nset rmargin screen "
+      "set label 1 {} at screen 0.5, {} center font ',22' noenhanced\nset lmargin screen 0.125\nset rmargin screen "
       "0.97\n",
       quotedForGnuplot(title), 1 - 35.0 / height);
   for (std::size_t i = 0; i < panels.size(); ++i) {
