@@ -98,6 +98,9 @@ void plotRuns(const std::vector<std::string>& runs, const std::string& output, c
   requireReference(quantities, options);
   requireWritableFile(output);
   for (const std::string& run : runs) requireOtherFile(output, run);
+  if (!options.reference.empty()) requireOtherFile(output, options.reference);
+  if (!canDrawCharts())
+    throw Error(ErrorKind::output, output, "gnuplot cannot be started; install the package gnuplot-nox");
   const std::vector<RunOrigin> origins = originsOf(runs, options);
   std::deque<TrajectorySource> sources;  // what is wrong with one shows before any is simulated
   for (const RunOrigin& origin : origins) sources.emplace_back(origin.input, quiet, optionsOf(origin, options));

@@ -9,9 +9,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kSmallHole = 0.05;        // of the mesh's diagonal
-constexpr double kFlatHole = 0.2;          // of the hole's: so far its corners may be off its plane
-constexpr double kLeastArea = 1e-9;        // of the square of the hole's diagonal: a crack has no way to be filled
+constexpr double kMaxHoleRatio = 0.05;     // of the mesh's diagonal
+constexpr double kMaxHeightRatio = 0.2;    // of the hole's: so far its corners may be off its plane
+constexpr double kMinAreaRatio = 1e-9;     // of the square of the hole's diagonal: a crack has no way to be filled
 constexpr std::size_t kMaxCorners = 1000;  // of a hole
 
 using Ring = std::vector<std::uint32_t>;  // vertices, counter-clockwise seen from outside
@@ -68,13 +68,13 @@ std::optional<std::vector<Eigen::Vector2d>> flattened(const Ring& ring, const Tr
     normal += a.cross(b);
     middle += a / static_cast<double>(ring.size());
   }
-  if (!(normal.norm() > kLeastArea * size * size)) return std::nullopt;
+  if (!(normal.norm() > kMinAreaRatio * size * size)) return std::nullopt;
   normal.normalize();
   const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
   std::vector<Eigen::Vector2d> points;
   for (const std::uint32_t vertex : ring) {
     const Vec3 from = mesh.vertices[vertex] - first - middle;
-    if (std::abs(from.dot(normal)) > kFlatHole * size) return std::nullopt;
+    if (std::abs(from.dot(normal)) > kMaxHeightRatio * size) return std::nullopt;
     points.emplace_back(from.dot(u), from.dot(v));
   }
   return points;
@@ -136,7 +136,7 @@ void fillHoles(LoadedModel& loaded) {
   const std::vector<Ring> rings = ringsOf(std::move(*edges));
   for (const Ring& ring : rings) {
     const double size = sizeOf(ring, solid);
-    if (ring.size() < 3 || ring.size() > kMaxCorners || !(size < kSmallHole * bounds.diagonal().norm())) return;
+    if (ring.size() < 3 || ring.size() > kMaxCorners || !(size < kMaxHoleRatio * bounds.diagonal().norm())) return;
     const auto points = flattened(ring, solid);
     const auto triangles = points ? filling(ring, *points) : std::nullopt;
     if (!triangles) return;

@@ -158,7 +158,7 @@ int legendRows(const std::vector<Curve>& curves) {
 
 /// Around all costs, with room at both ends.
 std::pair<double, double> costRangeOf(const std::vector<Curve>& curves, double ChartPoint::*cost, bool withBlowUps) {
-  constexpr double kRoom = 2, kLeastSpan = 150;  // an axis has two powers of ten at least
+  constexpr double kRoom = 2, kMinSpanRatio = 150;  // an axis has two powers of ten at least
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const Curve& curve : curves)
     for (const std::vector<ChartPoint>* points : {&curve.points, &curve.blowUps})
@@ -166,7 +166,7 @@ std::pair<double, double> costRangeOf(const std::vector<Curve>& curves, double C
         if ((withBlowUps || points == &curve.points) && point.*cost > 0)
           least = std::min(least, point.*cost), most = std::max(most, point.*cost);
   if (!(least <= most)) return {0.1, 1};
-  const double room = std::max(kRoom, std::sqrt(kLeastSpan * least / most));
+  const double room = std::max(kRoom, std::sqrt(kMinSpanRatio * least / most));
   return {least / room, most * room};
 }
 

@@ -143,9 +143,9 @@ class Pendulum {
   /// Of the plane of gravity and the arm, in which the angle at the start is positive; if it hangs straight down, of
   /// the motion.
   Vec3 normalOf(const Vec3& arm, const Vec3& velocity) const {
-    constexpr double kLeastSine = 1e-9;
+    constexpr double kMinSine = 1e-9;
     for (const Vec3& normal : {Vec3(down_.cross(arm)), Vec3(down_.cross(velocity))})
-      if (normal.norm() > kLeastSine * (arm.norm() + velocity.norm())) return normal.normalized();
+      if (normal.norm() > kMinSine * (arm.norm() + velocity.norm())) return normal.normalized();
     return Vec3::UnitZ();
   }
 

@@ -362,6 +362,11 @@ class Trajectories(InTemporaryFolder):
                                  (["--reference", "without"], ["-o", chart, "--reference", path]),
                                  (["--methods", "trajectories"], ["-o", chart, "--methods", "rk4"])):
             self.refuses(2, words, "plot", run, *arguments, leaves=there)
+        other = self.path("other.svg")
+        shutil.copy(run, other)
+        for arguments in ([other, "-o", other], [run, "-o", other, "--quantity", "error", "--reference", other]):
+            self.refuses(5, ["other.svg"], "plot", *arguments)
+            self.assertEqual(content(other), content(run))
 
     def test_interruption_keeps_a_valid_part(self):
         path = self.write("s.json", scene(duration=100000))
