@@ -9,12 +9,19 @@ in float coverage;
 #if PATTERNS
 in vec3 bodyPosition;
 #endif
+#if TEXTURES
+in vec2 coordinates;
+uniform sampler2D colorMap;
+#endif
 
 out vec4 color;
 
 void main() {
 #if PATTERNS
   bodyPlace = bodyPosition;
+#endif
+#if TEXTURES
+  texel = texture(colorMap, coordinates).rgb;
 #endif
   vec3 n = normalize(gl_FrontFacing ? normal : -normal);
   color = vec4(encode(shade(position, n)), sampleShare(coverage));

@@ -45,6 +45,8 @@ vec3 painted(vec3 base) {
 }
 #endif
 
+vec3 texel = vec3(1.0);  // linear, of the texture: main() says it
+
 const float kDielectric = 0.04;   // reflected straight on by plastic, wood, stone
 const float kSheen = 0.08;         // the same of what is seen in a mirror, at the usual slant
 const float kLightWidth = 0.035;  // the lights are no points: the narrowest highlight
@@ -89,7 +91,7 @@ float sampleShare(float coverage) {
 vec3 shade(vec3 position, vec3 n) {
   vec3 v = normalize(eye - position);
   float metallic = surfaceColor.w;
-  vec3 base = surfaceColor.rgb;
+  vec3 base = surfaceColor.rgb * texel;
 #if PATTERNS
   if (patternKind > 0.5) base = painted(base);
 #endif

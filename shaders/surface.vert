@@ -13,6 +13,10 @@ layout(location = 5) in vec4 instanceRoughness;  // w; linear colour of the patt
 layout(location = 6) in vec4 instanceColor;      // linear; w is metallic
 layout(location = 7) in vec4 instanceOccluders;  // first and number of the occluders near; 1 if it mirrors shadows, and twice the kind of pattern; its cell, m
 
+#if TEXTURES
+layout(location = 8) in vec2 meshCoordinates;  // on the texture; rows from the top
+#endif
+
 out vec3 position;
 out vec3 normal;
 flat out vec4 surfaceColor;
@@ -20,10 +24,11 @@ flat out float roughness;
 flat out vec2 nearOccluders;
 flat out float mirrorsShadows;
 out float coverage;
-#if PATTERNS
-out vec3 bodyPosition;
+#if TEXTURES
+out vec2 coordinates;
 #endif
 #if PATTERNS
+out vec3 bodyPosition;
 flat out vec4 pattern;
 flat out float patternKind;
 #endif
@@ -41,6 +46,9 @@ void main() {
   pattern = vec4(instanceRoughness.xyz, instanceOccluders.w);
   patternKind = floor(0.5 * instanceOccluders.z);
   bodyPosition = meshPosition;
+#endif
+#if TEXTURES
+  coordinates = meshCoordinates;
 #endif
   coverage = 1.0;
   gl_Position = clipFromWorld * vec4(position, 1.0);

@@ -21,6 +21,9 @@ flat out float roughness;
 flat out vec2 nearOccluders;
 flat out float mirrorsShadows;
 out float coverage;
+#if TEXTURES
+out vec2 coordinates;
+#endif
 #if PATTERNS
 out vec3 bodyPosition;
 flat out vec4 pattern;
@@ -92,6 +95,9 @@ void main() {
   bodyPosition = vec3(0.0);
   pattern = vec4(0.0);
   patternKind = 0.0;
+#endif
+#if TEXTURES
+  coordinates = vec2(0.0);
 #endif
   mirrorsShadows = 0.0;
   gl_Position = clipFromWorld * vec4(position, 1.0);

@@ -56,6 +56,13 @@ void writeMaterial(const MaterialLook& material, ChunkWriter& out) {
   writeColor(0xA010, {0, 0, 0}, out);         // ambient
   writeColor(0xA020, material.diffuse, out);  // diffuse
   writeColor(0xA030, {90, 90, 90}, out);      // specular
+  if (!material.texture.empty()) {
+    out.begin(0xA200);
+    out.begin(0xA300);
+    out.text(material.texture);
+    out.end();
+    out.end();
+  }
   out.end();
 }
 
@@ -79,6 +86,14 @@ void writeFaces(const Surface& surface, const std::string& material, ChunkWriter
   out.end();
 }
 
+void writeCoordinates(const Surface& surface, ChunkWriter& out) {
+  out.begin(0x4140);
+  out.number(static_cast<std::uint16_t>(surface.coordinates.size()));
+  for (const Vec2f& place : surface.coordinates)
+    for (const float coordinate : place) out.real(coordinate);
+  out.end();
+}
+
 void writeObject(const Surface& surface, const std::string& material, ChunkWriter& out) {
   out.begin(0x4000);
   out.text(surface.name);
@@ -92,6 +107,7 @@ void writeObject(const Surface& surface, const std::string& material, ChunkWrite
   }
   out.end();
   writeFaces(surface, material, out);
+  if (!surface.coordinates.empty()) writeCoordinates(surface, out);
   out.end();
   out.end();
 }

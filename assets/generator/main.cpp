@@ -4,7 +4,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "die.h"
 #include "file_3ds.h"
+#include "image/png.h"
 #include "models.h"
 
 namespace {
@@ -30,11 +32,14 @@ int main(int argumentCount, char** arguments) {
   }
   const std::string folder = arguments[argumentCount - 1];
   bool allGood = true;
-  for (const cradle::assets::Model& model : cradle::assets::allModels()) {
-    const std::string path = folder + "/" + model.fileName, bytes = cradle::assets::encode3ds(model);
+  const auto take = [&](const std::string& fileName, const std::string& bytes) {
+    const std::string path = folder + "/" + fileName;
     const bool good = onlyChecks ? hasBytes(path, bytes) : write(path, bytes);
     if (!good) std::fprintf(stderr, "%s: %s\n", path.c_str(), onlyChecks ? "differs: generate again" : "not written");
     allGood = allGood && good;
-  }
+  };
+  for (const cradle::assets::Model& model : cradle::assets::allModels()) take(model.fileName, encode3ds(model));
+  const std::vector<std::uint8_t> picture = cradle::encodePng(cradle::assets::diePicture());
+  take("die.png", {picture.begin(), picture.end()});
   return allGood ? 0 : 1;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "die.h"
 #include "rocks.h"
 #include "t_handle.h"
 
@@ -244,6 +245,7 @@ std::vector<Model> allModels() {
   return {{"ball.3ds", {{"Steel", {200, 205, 212}}}, {ball()}},
           {"box.3ds", {{"Birch", {214, 182, 138}}}, {box()}},
           cradleFrame(),
+          {"die.3ds", {{"Ivory", {238, 231, 214}, "die.png"}}, {die()}},
           {"gear.3ds", {{"Brass", {196, 160, 82}}}, {gear()}},
           {"l_prism.3ds", {{"Teal", {42, 132, 138}}}, {lPrism()}},
           {"ring.3ds", {{"Brass", {196, 160, 82}}}, {tubeRing("Ring", 0.5, 0.025, 96, 20)}},

@@ -22,6 +22,7 @@ struct Surface {
   std::size_t material = 0;    // index into Model::materials
   std::vector<Vec3> vertices;  // m, y up
   std::vector<Face> faces;
+  std::vector<Vec2f> coordinates = {};  // of each vertex on the texture of the material, from below; or none
 
   std::uint16_t add(const Vec3& vertex);
   void addTriangle(std::size_t a, std::size_t b, std::size_t c, std::uint32_t smoothingGroups);
@@ -31,6 +32,7 @@ struct Surface {
 struct MaterialLook {
   std::string name;
   std::array<std::uint8_t, 3> diffuse;  // sRGB
+  std::string texture = {};             // a file of this folder; or none
 };
 
 /// What one file holds.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -37,6 +38,11 @@ Json floatsOf(const Vector& vector) {
 /// Names in mesh files need not be UTF-8.
 std::string textOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// The bytes of the words that so many bytes take.
+std::size_t wholeWords(std::size_t bytes) {
+  return (bytes + kWord - 1) / kWord * kWord;
 }
 
 void writeWords(PartFile& file, const std::vector<std::uint32_t>& words) {
@@ -71,7 +77,8 @@ GlbFile::~GlbFile() = default;
 int GlbFile::addArray(std::vector<std::uint32_t> words, int width, int componentType) {
   Json& json = document_->json;
   const int number = static_cast<int>(arrays_.size());
-  const char* type = width == 1 ? "SCALAR" : width == 3 ? "VEC3" : "VEC4";
+  constexpr std::array kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+  const char* type = kTypes.at(static_cast<std::size_t>(width - 1));
   json["accessors"].push_back({{"bufferView", number},
                                {"componentType", componentType},
                                {"count", words.size() / static_cast<std::size_t>(width)},
@@ -115,13 +122,26 @@ void GlbFile::bound(int array) {
   }
 }
 
-int GlbFile::addMaterial(const std::string& name, const Surface& surface, bool isDoubleSided) {
+int GlbFile::addTexture(const SharedTexture& texture) {
+  const auto known = std::find(textures_.begin(), textures_.end(), texture);
+  const auto number = static_cast<int>(known - textures_.begin());
+  if (known != textures_.end()) return number;
+  textures_.push_back(texture);
+  Json& json = document_->json;
+  json["images"].push_back({{"name", texture->name}, {"mimeType", isPng(texture->bytes) ? "image/png" : "image/jpeg"}});
+  json["textures"].push_back({{"source", number}});
+  return number;
+}
+
+int GlbFile::addMaterial(const std::string& name, const Surface& surface, const SharedTexture& texture,
+                         bool isDoubleSided) {
   Json color = floatsOf(surface.color);
   color.push_back(1);
   Json material;
   if (!name.empty()) material["name"] = name;
   material["pbrMetallicRoughness"] = {
       {"baseColorFactor", color}, {"metallicFactor", surface.metallic}, {"roughnessFactor", surface.roughness}};
+  if (texture) material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", addTexture(texture)}};
   if (isDoubleSided) material["doubleSided"] = true;
   return document_->addOnce("materials", material);
 }
@@ -132,9 +152,10 @@ int GlbFile::addMesh(const std::string& name, const std::vector<GlbPrimitive>& p
     mesh["primitives"].push_back({{"attributes", {{"POSITION", primitive.positions}, {"NORMAL", primitive.normals}}},
                                   {"indices", primitive.indices},
                                   {"material", primitive.material}});
+    if (primitive.coordinates >= 0) mesh["primitives"].back()["attributes"]["TEXCOORD_0"] = primitive.coordinates;
     Json& views = document_->json["bufferViews"];
-    for (const int array : {primitive.positions, primitive.normals})
-      views[static_cast<std::size_t>(array)]["target"] = kVertices;
+    for (const int array : {primitive.positions, primitive.normals, primitive.coordinates})
+      if (array >= 0) views[static_cast<std::size_t>(array)]["target"] = kVertices;
     views[static_cast<std::size_t>(primitive.indices)]["target"] = kIndices;
     bound(primitive.positions);
   }
@@ -193,13 +214,19 @@ void GlbFile::standAsAtStart() {
 void GlbFile::write(const std::string& path, PartFile& file) {
   standAsAtStart();
   std::uint64_t binary = 0;
+  Json& views = document_->json["bufferViews"];
   for (std::size_t i = 0; i < arrays_.size(); ++i) {
-    document_->json["bufferViews"][i]["byteOffset"] = binary;
+    views[i]["byteOffset"] = binary;
     binary += kWord * arrays_[i].size();
+  }
+  for (std::size_t i = 0; i < textures_.size(); ++i) {
+    document_->json["images"][i]["bufferView"] = views.size();
+    views.push_back({{"buffer", 0}, {"byteOffset", binary}, {"byteLength", textures_[i]->bytes.size()}});
+    binary += wholeWords(textures_[i]->bytes.size());
   }
   document_->json["buffers"] = Json::array({{{"byteLength", binary}}});
   std::string text = textOf(document_->json);
-  text.resize((text.size() + kWord - 1) / kWord * kWord, ' ');
+  text.resize(wholeWords(text.size()), ' ');
   requireFits(text.size() + binary, path);
 
   const auto word = [](std::uint64_t number) { return static_cast<std::uint32_t>(number); };
@@ -208,6 +235,10 @@ void GlbFile::write(const std::string& path, PartFile& file) {
   file.write(text);
   writeWords(file, {word(binary), kBinaryChunk});
   for (const std::vector<std::uint32_t>& words : arrays_) writeWords(file, words);
+  for (const SharedTexture& texture : textures_) {
+    file.write(texture->bytes);
+    file.write(std::string(wholeWords(texture->bytes.size()) - texture->bytes.size(), '\0'));
+  }
 }
 
 }  // namespace cradle

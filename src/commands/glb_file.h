@@ -16,6 +16,7 @@ namespace cradle {
 /// Triangles of a mesh with one material; numbers are those that GlbFile gave.
 struct GlbPrimitive {
   int positions = 0, normals = 0, indices = 0, material = 0;
+  int coordinates = -1;  // on a texture; -1: none
 };
 
 /// A glTF 2.0 file in its binary form: a scene of nodes with meshes, and one animation. It is built up in memory, and
@@ -29,7 +30,7 @@ class GlbFile {
   GlbFile(const GlbFile&) = delete;
   GlbFile& operator=(const GlbFile&) = delete;
 
-  /// An array of vectors of `width` numbers each (1, 3 or 4), zero until they are set.
+  /// An array of vectors of `width` numbers each (1 to 4), zero until they are set.
   int addVectors(std::size_t count, int width);
   template <typename Vector>
   void set(int array, std::size_t index, const Vector& vector) {
@@ -38,8 +39,8 @@ class GlbFile {
   }
   int addIndices(std::span<const Triangle> triangles);
 
-  /// Of equal materials, and meshes, there is one.
-  int addMaterial(const std::string& name, const Surface& surface, bool isDoubleSided);
+  /// Of equal materials, and meshes, there is one; of a texture, too.
+  int addMaterial(const std::string& name, const Surface& surface, const SharedTexture& texture, bool isDoubleSided);
   int addMesh(const std::string& name, const std::vector<GlbPrimitive>& primitives);
 
   /// A node of the scene, or of the node `parent`.
@@ -60,12 +61,14 @@ class GlbFile {
  private:
   struct Document;
   void setNumbers(int array, std::size_t index, std::span<const float> numbers);
+  int addTexture(const SharedTexture& texture);
   int addArray(std::vector<std::uint32_t> words, int width, int componentType);
   void bound(int array);
   void standAsAtStart();
 
   std::unique_ptr<Document> document_;
   std::vector<std::vector<std::uint32_t>> arrays_;  // of each accessor; floats by their bits
+  std::vector<SharedTexture> textures_;             // whose bytes lie behind the arrays
 };
 
 }  // namespace cradle

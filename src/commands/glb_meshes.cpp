@@ -36,12 +36,16 @@ GlbMeshes::Geometry GlbMeshes::addGeometry(const std::string& name, const DrawnM
     file_.set(geometry.positions, i, drawn.vertices[i]);
     file_.set(geometry.normals, i, drawn.normals[i]);
   }
+  const std::vector<Vec2f>& coordinates = drawn.textureCoordinates;
+  if (!coordinates.empty()) geometry.coordinates = file_.addVectors(coordinates.size(), 2);
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    file_.set(geometry.coordinates, i, Vec2f(coordinates[i].x(), 1 - coordinates[i].y()));  // from above, there
   const std::span<const Triangle> triangles(drawn.triangles);
   for (const ModelMaterial& range : drawn.materials)
     if (range.triangleCount > 0)
-      geometry.ranges.push_back(
-          {range.name, range.baseColor, file_.addIndices(triangles.subspan(range.firstTriangle, range.triangleCount))});
-  if (drawn.materials.empty()) geometry.ranges.push_back({"", {}, file_.addIndices(triangles)});
+      geometry.ranges.push_back({range.name, range.baseColor, range.texture,
+                                 file_.addIndices(triangles.subspan(range.firstTriangle, range.triangleCount))});
+  if (drawn.materials.empty()) geometry.ranges.push_back({"", {}, {}, file_.addIndices(triangles)});
   return geometry;
 }
 
@@ -63,10 +67,12 @@ int GlbMeshes::ofBody(std::size_t number) {
   const Material& material = scene_.materials.at(static_cast<std::size_t>(body.material));
   std::vector<GlbPrimitive> primitives;
   for (const Geometry::Range& range : geometry.ranges) {
-    const bool isFiles = !material.baseColor && !range.materialName.empty();
+    const bool isFiles = !material.baseColor && !material.texture && !range.materialName.empty();
+    const SharedTexture texture = textureOf(material, range.fileTexture);
     const int look = file_.addMaterial(isFiles ? range.materialName : material.name,
-                                       surfaceOf(material, range.fileColor), !geometry.isClosed);
-    primitives.push_back({geometry.positions, geometry.normals, range.indices, look});
+                                       surfaceOf(material, range.fileColor), texture, !geometry.isClosed);
+    primitives.push_back(
+        {geometry.positions, geometry.normals, range.indices, look, texture ? geometry.coordinates : -1});
   }
   return file_.addMesh(geometry.name, primitives);
 }
@@ -74,7 +80,7 @@ int GlbMeshes::ofBody(std::size_t number) {
 int GlbMeshes::add(const std::string& name, const DrawnMesh& drawn, const std::string& material,
                    const Surface& surface) {
   const Geometry geometry = addGeometry(name, drawn);
-  const int look = file_.addMaterial(material, surface, false);
+  const int look = file_.addMaterial(material, surface, nullptr, false);
   return file_.addMesh(name, {{geometry.positions, geometry.normals, geometry.ranges.at(0).indices, look}});
 }
 

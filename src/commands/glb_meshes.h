@@ -30,10 +30,12 @@ class GlbMeshes {
     struct Range {
       std::string materialName;
       std::optional<Vec3f> fileColor;  // sRGB
+      SharedTexture fileTexture;
       int indices = 0;
     };
     std::string name;
     int positions = 0, normals = 0;
+    int coordinates = -1;  // on a texture; -1: none
     std::vector<Range> ranges = {};
     bool isClosed = true;  // else its inside may be seen
   };

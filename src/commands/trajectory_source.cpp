@@ -26,10 +26,20 @@ ModelSource modelsOf(const TrajectoryHeader& header) {
   };
 }
 
+TextureSource texturesOf(const TrajectoryHeader& header) {
+  return [&header](const std::string& path) {
+    const auto texture = std::find_if(header.textures.begin(), header.textures.end(),
+                                      [&](const SharedTexture& candidate) { return candidate->name == path; });
+    if (texture == header.textures.end())
+      throw Error(ErrorKind::mesh, path, "is not in the trajectory, though its scene names it");
+    return *texture;
+  };
+}
+
 Scene parsedScene(const TrajectoryReader& trajectory) {
   const TrajectoryHeader& header = trajectory.header();
   try {
-    return parseScene(header.scene, header.scenePath, modelsOf(header)).scene;
+    return parseScene(header.scene, header.scenePath, modelsOf(header), texturesOf(header)).scene;
   } catch (const Error& error) {
     const std::string faults = error.what();
     throw Error(ErrorKind::usage, trajectory.path(),

@@ -6,6 +6,7 @@
 namespace cradle {
 
 using Vec3 = Eigen::Vector3d;
+using Vec2f = Eigen::Vector2f;
 using Vec3f = Eigen::Vector3f;
 using Mat3 = Eigen::Matrix3d;
 using Quat = Eigen::Quaterniond;  // constructor (w, x, y, z); stored x, y, z, w

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/error.h"
 
@@ -17,6 +18,14 @@ Vec3f unitOrZero(const Vec3f& normal) {
   return length > kShortestNormal && std::isfinite(length) ? Vec3f(normal / length) : Vec3f(Vec3f::Zero());
 }
 
+/// Three values of triangle `from` become those of triangle `to`; of what a piece may lack, none.
+template <typename T>
+void moveCorners(std::size_t from, std::size_t to, std::vector<T>& corners) {
+  if (!corners.empty())
+    std::copy_n(corners.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
+                corners.begin() + static_cast<std::ptrdiff_t>(3 * to));
+}
+
 // Drops triangles with two equal corners; returns how many there were, with those left out before.
 std::size_t dropDegenerate(MeshPiece& piece) {
   std::size_t kept = 0;
@@ -24,10 +33,9 @@ std::size_t dropDegenerate(MeshPiece& piece) {
     const Vec3 &a = piece.corners[3 * t], &b = piece.corners[3 * t + 1], &c = piece.corners[3 * t + 2];
     if (isDegenerate(a, b, c)) continue;
     if (kept != t) {
-      std::copy_n(piece.corners.begin() + static_cast<std::ptrdiff_t>(3 * t), 3,
-                  piece.corners.begin() + static_cast<std::ptrdiff_t>(3 * kept));
-      std::copy_n(piece.normals.begin() + static_cast<std::ptrdiff_t>(3 * t), 3,
-                  piece.normals.begin() + static_cast<std::ptrdiff_t>(3 * kept));
+      moveCorners(t, kept, piece.corners);
+      moveCorners(t, kept, piece.normals);
+      moveCorners(t, kept, piece.textureCoordinates);
       piece.smoothing[kept] = piece.smoothing[t];
     }
     ++kept;
@@ -35,6 +43,7 @@ std::size_t dropDegenerate(MeshPiece& piece) {
   const std::size_t dropped = piece.smoothing.size() - kept;
   piece.corners.resize(3 * kept);
   piece.normals.resize(3 * kept);
+  if (!piece.textureCoordinates.empty()) piece.textureCoordinates.resize(3 * kept);
   piece.smoothing.resize(kept);
   return piece.degenerate + dropped;
 }
@@ -62,27 +71,32 @@ std::size_t appendPiece(MeshPiece piece, bool continuesMaterial, DrawnMesh& draw
   drawn.materials.back().triangleCount += static_cast<std::uint32_t>(piece.smoothing.size());
   append(std::move(piece.corners), drawn.vertices);
   append(std::move(piece.normals), drawn.normals);
+  append(std::move(piece.textureCoordinates), drawn.textureCoordinates);
   append(std::move(piece.smoothing), smoothing);
   return degenerate;
 }
 
-std::uint32_t normalBits(float value) {
+std::uint64_t bitsOf(float value) {
   return std::bit_cast<std::uint32_t>(value == 0 ? 0.0f : value);
 }
 
-// Corners with bit-equal position and normal become one vertex: a smooth mesh shrinks to a sixth.
+// Corners with bit-equal position, normal and texture coordinates become one vertex: a smooth mesh shrinks to a sixth.
 void shareCorners(const Numbering& positions, DrawnMesh& drawn) {
+  const bool hasCoordinates = !drawn.textureCoordinates.empty();
   const Numbering numbering = numberDistinct(drawn.vertices.size(), [&](std::size_t v) {
     const Vec3f& n = drawn.normals[v];
-    return std::array{std::uint64_t{positions.numberOf[v]} << 32 | normalBits(n.x()),
-                      std::uint64_t{normalBits(n.y())} << 32 | normalBits(n.z())};
+    const Vec2f at = hasCoordinates ? drawn.textureCoordinates[v] : Vec2f(Vec2f::Zero());
+    return std::array{std::uint64_t{positions.numberOf[v]} << 32 | bitsOf(n.x()), bitsOf(n.y()) << 32 | bitsOf(n.z()),
+                      bitsOf(at.x()) << 32 | bitsOf(at.y())};
   });
   for (std::size_t v = 0; v < numbering.firstKey.size(); ++v) {  // firstKey[v] >= v: nothing is read after it changed
     drawn.vertices[v] = drawn.vertices[numbering.firstKey[v]];
     drawn.normals[v] = drawn.normals[numbering.firstKey[v]];
+    if (hasCoordinates) drawn.textureCoordinates[v] = drawn.textureCoordinates[numbering.firstKey[v]];
   }
   drawn.vertices.resize(numbering.firstKey.size());
   drawn.normals.resize(numbering.firstKey.size());
+  if (hasCoordinates) drawn.textureCoordinates.resize(numbering.firstKey.size());
   for (Triangle& triangle : drawn.triangles)
     for (std::uint32_t& corner : triangle) corner = numbering.numberOf[corner];
 }
@@ -114,7 +128,12 @@ LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces
   DrawnMesh& drawn = loaded.model.drawn;
   std::vector<Smoothing> smoothing;
   std::size_t degenerate = 0;
+  const bool hasCoordinates = std::any_of(pieces.begin(), pieces.end(),
+                                          [](const MeshPiece& piece) { return !piece.textureCoordinates.empty(); });
+  std::set<std::string> textureFaults;
   for (std::size_t p = 0; p < pieces.size(); ++p) {
+    if (hasCoordinates) pieces[p].textureCoordinates.resize(pieces[p].corners.size(), Vec2f::Zero());
+    if (!pieces[p].textureFault.empty()) textureFaults.insert(pieces[p].textureFault);
     const bool continuesMaterial = p > 0 && pieces[p].material == pieces[p - 1].material;
     degenerate += appendPiece(std::move(pieces[p]), continuesMaterial, drawn, smoothing);
   }
@@ -132,6 +151,7 @@ LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces
   }
 
   if (degenerate > 0) loaded.notes.push_back(plural(degenerate, "degenerate triangle") + " dropped");
+  loaded.notes.insert(loaded.notes.end(), textureFaults.begin(), textureFaults.end());
   return loaded;
 }
 
@@ -139,11 +159,19 @@ LoadedModel joinModels(const std::string& name, const std::vector<LoadedModel>& 
   LoadedModel joined;
   joined.model.name = name;
   DrawnMesh& drawn = joined.model.drawn;
+  const bool hasCoordinates = std::any_of(objects.begin(), objects.end(), [](const LoadedModel& object) {
+    return !object.model.drawn.textureCoordinates.empty();
+  });
   for (const auto& [object, notes] : objects) {
     const auto firstVertex = static_cast<std::uint32_t>(drawn.vertices.size());
     const auto firstTriangle = static_cast<std::uint32_t>(drawn.triangles.size());
     drawn.vertices.insert(drawn.vertices.end(), object.drawn.vertices.begin(), object.drawn.vertices.end());
     drawn.normals.insert(drawn.normals.end(), object.drawn.normals.begin(), object.drawn.normals.end());
+    const std::vector<Vec2f>& coordinates = object.drawn.textureCoordinates;
+    if (hasCoordinates) {
+      drawn.textureCoordinates.insert(drawn.textureCoordinates.end(), coordinates.begin(), coordinates.end());
+      drawn.textureCoordinates.resize(drawn.vertices.size(), Vec2f::Zero());
+    }
     for (const auto& [a, b, c] : object.drawn.triangles)
       drawn.triangles.push_back({firstVertex + a, firstVertex + b, firstVertex + c});
     for (ModelMaterial material : object.drawn.materials) {

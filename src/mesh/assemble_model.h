@@ -18,6 +18,8 @@ struct MeshPiece {
   std::uint64_t degenerate = 0;      // triangles with two equal corners, left out already
   int material = 0;                  // pieces of one number become one range
   ModelMaterial look;
+  std::vector<Vec2f> textureCoordinates = {};  // as DrawnMesh has them, one a corner; or none
+  std::string textureFault = {};               // why the texture of its material is left out; empty if it is not
 };
 
 /// Whether a triangle has two equal corners: it is no part of a surface.
@@ -25,9 +27,9 @@ inline bool isDegenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
   return a == b || b == c || c == a;
 }
 
-/// Joins the pieces of an object: drops degenerate triangles, shares corners with equal position and normal, orders by
-/// material, and welds the solid; `notes` says what was mended. The result's solid is weld(drawn.vertices,
-/// drawn.triangles). If the solid alone is wanted, nothing is drawn. O(n).
+/// Joins the pieces of an object: drops degenerate triangles, shares corners with equal position, normal and texture
+/// coordinates, orders by material, and welds the solid; `notes` says what was mended. The result's solid is
+/// weld(drawn.vertices, drawn.triangles). If the solid alone is wanted, nothing is drawn. O(n).
 LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces, ModelParts parts);
 
 /// Several objects as one model, in their order.

@@ -119,6 +119,7 @@ void addTriangle(const Triangle& triangle, Model& model) {
     drawn.vertices.push_back(place(corner));
     drawn.normals.push_back(normal.cast<float>());
   }
+  if (!drawn.textureCoordinates.empty()) drawn.textureCoordinates.resize(drawn.vertices.size(), Vec2f::Zero());
   drawn.triangles.push_back({first, first + 1, first + 2});
   if (!drawn.materials.empty()) ++drawn.materials.back().triangleCount;
 }

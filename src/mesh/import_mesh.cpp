@@ -104,12 +104,21 @@ std::string lowerExtension(const std::string& path) {
   return extension;
 }
 
+/// The texture that a material has for its base colour.
+struct ColorMap {
+  SharedTexture texture;
+  unsigned int set = 0;  // of the texture coordinates that place it
+  std::string fault;     // why it is left out, as a note; empty if it is not, or there is none
+};
+
 // A file as assimp understood it.
 struct ImportedFile {
   std::string path;
-  Assimp::Importer importer;  // owns the scene
+  Assimp::Importer importer;  // owns the scene, and the files
+  MeshFiles* files = nullptr;
   const aiScene* scene = nullptr;
-  Summary3ds summary;  // empty unless a 3ds file
+  Summary3ds summary;               // empty unless a 3ds file
+  std::vector<ColorMap> colorMaps;  // of each material
 };
 
 /// An importer's words may quote the file: one line of it, of letters.
@@ -139,11 +148,12 @@ void importFile(const std::string& path, ImportedFile& file) {
   file.path = path;
   auto* files = new MeshFiles(path);  // the importer deletes it
   file.importer.SetIOHandler(files);
+  file.files = files;
   const std::string& bytes = files->read(path);
   const bool looksLike3ds = bytes.starts_with("MM") && !file.importer.IsExtensionSupported(lowerExtension(path));
   if (isNamed3ds(path) || looksLike3ds) file.summary = check3ds(bytes, path);
   if (lowerExtension(path) == ".obj") requireFewParts(bytes, path);
-  file.scene = file.importer.ReadFile(path, aiProcess_Triangulate);
+  file.scene = file.importer.ReadFile(path, aiProcess_Triangulate | aiProcess_TransformUVCoords);
   if (!files->outside().empty())
     throw Error(ErrorKind::mesh, path,
                 fmt::format("names the file \"{}\", which is not below its folder; a mesh may not reach outside of it",
@@ -220,14 +230,90 @@ std::string materialName(const aiMaterial& material) {
   return name.C_Str();
 }
 
+/// Names of pictures in mesh files are often those of another machine: with its separators, folders and capitals. Each
+/// path below the folder of the mesh that may be meant, the likeliest first.
+std::vector<std::string> pathsOfTexture(const std::string& meshPath, std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  const fs::path folder = parentOf(meshPath);
+  const std::string last = fs::path(name).filename().string();
+  const auto inCase = [&last](char first, char to) {
+    std::string cased = last;
+    for (char& c : cased)
+      if (c >= first && c < first + 26) c = static_cast<char>(c - first + to);
+    return cased;
+  };
+  std::vector<std::string> paths;
+  for (const std::string& candidate : {name, last, inCase('A', 'a'), inCase('a', 'A')})
+    paths.push_back((folder / candidate).string());
+  return paths;
+}
+
+/// `bytes` if they can be decoded, else the fault.
+ColorMap checkedTexture(const std::string& name, std::string bytes) {
+  const std::string fault = textureFault(bytes);
+  if (fault.empty()) return {std::make_shared<const Texture>(Texture{name, std::move(bytes)}), 0, ""};
+  return {nullptr, 0, fmt::format("its texture \"{}\" {}; drawn without it", reasonOf(name), fault)};
+}
+
+/// What a mesh file names as a texture: bytes inside it, or another file.
+ColorMap textureNamed(const ImportedFile& file, const std::string& name) {
+  if (const aiTexture* inside = file.scene->GetEmbeddedTexture(name.c_str())) {
+    if (inside->mHeight != 0)
+      return {nullptr, 0, "its texture inside the file is neither PNG nor JPEG; drawn without it"};
+    const auto* bytes = reinterpret_cast<const char*>(inside->pcData);
+    const std::string own = inside->mFilename.C_Str();
+    return checkedTexture(own.empty() ? fs::path(file.path).filename().string() + name : own, {bytes, inside->mWidth});
+  }
+  for (const std::string& path : pathsOfTexture(file.path, name))
+    if (file.files->Exists(path.c_str()))
+      return checkedTexture(fs::path(path).filename().string(), file.files->read(path));
+  return {nullptr, 0,
+          fmt::format("its texture \"{}\" is not in the folder of the mesh; drawn without it", reasonOf(name))};
+}
+
+ColorMap readColorMap(const ImportedFile& file, const aiMaterial& material) {
+  for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+    aiString name;
+    unsigned int set = 0;
+    if (material.GetTexture(type, 0, &name, nullptr, &set) != aiReturn_SUCCESS || name.length == 0) continue;
+    ColorMap map = textureNamed(file, name.C_Str());
+    map.set = set;
+    return map;
+  }
+  return {};
+}
+
+/// Materials that name the same picture share it.
+void readColorMaps(ImportedFile& file) {
+  for (unsigned m = 0; m < file.scene->mNumMaterials; ++m) {
+    ColorMap map = readColorMap(file, *file.scene->mMaterials[m]);
+    for (const ColorMap& other : file.colorMaps)
+      if (map.texture && other.texture && other.texture->name == map.texture->name &&
+          other.texture->bytes == map.texture->bytes)
+        map.texture = other.texture;
+    file.colorMaps.push_back(std::move(map));
+  }
+}
+
+/// glTF ("glTF 2.0 Specification", section 3.9.2) and obj files multiply a texture with the colour beside it; in other
+/// formats it stands in its place.
+bool multipliesTextures(const ImportedFile& file) {
+  const std::string extension = lowerExtension(file.path);
+  return extension == ".gltf" || extension == ".glb" || extension == ".obj";
+}
+
 ModelMaterial readMaterial(const ImportedFile& file, unsigned index) {
   ModelMaterial look;
   if (index >= file.scene->mNumMaterials) return look;
   const aiMaterial& material = *file.scene->mMaterials[index];
   look.name = materialName(material);
   const bool isMadeUp = look.name == "%%%DEFAULT" || look.name == AI_DEFAULT_MATERIAL_NAME;
+  if (isMadeUp) return look;
+  look.texture = file.colorMaps[index].texture;
+  if (look.texture) look.baseColor = Vec3f::Ones();
   aiColor3D color;
-  if (isMadeUp || material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != aiReturn_SUCCESS) return look;
+  if (look.texture && !multipliesTextures(file)) return look;
+  if (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != aiReturn_SUCCESS) return look;
   Vec3f base(color.r, color.g, color.b);
   if (!base.allFinite()) return look;
   base = base.cwiseMax(0).cwiseMin(1);
@@ -273,12 +359,34 @@ std::array<unsigned, 3> cornersOf(const ImportedFile& file, const Placement& pla
   return {indices[0], indices[1], indices[2]};
 }
 
+/// The texture coordinates of a mesh that place the texture of its material, or the first; null if it has none.
+const aiVector3D* coordinatesOf(const ImportedFile& file, const aiMesh& mesh) {
+  const unsigned set = mesh.mMaterialIndex < file.colorMaps.size() ? file.colorMaps[mesh.mMaterialIndex].set : 0;
+  return mesh.HasTextureCoords(set) ? mesh.mTextureCoords[set] : nullptr;
+}
+
+/// Material of a piece, with its texture if that can be drawn.
+void readLook(const ImportedFile& file, const aiMesh& mesh, MeshPiece& piece) {
+  piece.material = static_cast<int>(mesh.mMaterialIndex);
+  piece.look = readMaterial(file, mesh.mMaterialIndex);
+  if (mesh.mMaterialIndex < file.colorMaps.size()) piece.textureFault = file.colorMaps[mesh.mMaterialIndex].fault;
+  if (!piece.look.texture || coordinatesOf(file, mesh) != nullptr) return;
+  piece.textureFault = fmt::format("its texture \"{}\" has no coordinates to lie at; drawn without it",
+                                   reasonOf(piece.look.texture->name));
+  piece.look.texture = nullptr;
+}
+
+Vec2f coordinatesAt(const aiVector3D& place) {
+  const Vec2f coordinates(place.x, place.y);
+  return coordinates.allFinite() ? coordinates : Vec2f(Vec2f::Zero());
+}
+
 MeshPiece readPiece(const ImportedFile& file, const Placement& placement) {
   const aiMesh& mesh = *placement.mesh;
   const Mat3 turnNormal = normalTransform(placement.fileFromMesh.linear());
   MeshPiece piece;
-  piece.material = static_cast<int>(mesh.mMaterialIndex);
-  piece.look = readMaterial(file, mesh.mMaterialIndex);
+  readLook(file, mesh, piece);
+  const aiVector3D* coordinates = coordinatesOf(file, mesh);
   const std::vector<Smoothing> smoothing = smoothingOf3ds(file, mesh);
   const bool hasNormals = mesh.HasNormals() && smoothing.empty();
   piece.corners.reserve(3 * std::size_t{mesh.mNumFaces});
@@ -300,9 +408,10 @@ MeshPiece readPiece(const ImportedFile& file, const Placement& placement) {
     }
     piece.smoothing.push_back(smoothing.empty() ? kSmoothingUnknown : smoothing[face]);
     piece.corners.insert(piece.corners.end(), corners.begin(), corners.end());
-    if (!hasNormals) continue;
-    for (const unsigned vertex : vertices)
-      piece.normals.push_back((turnNormal * toVec3(mesh.mNormals[vertex])).cast<float>());
+    for (const unsigned vertex : vertices) {
+      if (hasNormals) piece.normals.push_back((turnNormal * toVec3(mesh.mNormals[vertex])).cast<float>());
+      if (coordinates != nullptr) piece.textureCoordinates.push_back(coordinatesAt(coordinates[vertex]));
+    }
   }
   return piece;
 }
@@ -317,6 +426,7 @@ bool isNamed3ds(const std::string& path) {
 std::vector<ImportedObject> parseObjects(const std::string& path) {
   ImportedFile file;
   importFile(path, file);
+  readColorMaps(file);
   std::vector<Placement> placements;
   placeMeshes(file, file.scene->mRootNode, Affine::Identity(), placements);
   placeForgottenMeshes(file, placements);

@@ -80,7 +80,17 @@ class Source {
   std::size_t next_ = 0;
 };
 
-void appendPiece(const MeshPiece& piece, std::string& bytes) {
+/// The textures of objects, each once.
+std::vector<SharedTexture> texturesOf(const std::vector<ImportedObject>& objects) {
+  std::vector<SharedTexture> textures;
+  for (const ImportedObject& object : objects)
+    for (const MeshPiece& piece : object.pieces)
+      if (piece.look.texture && std::find(textures.begin(), textures.end(), piece.look.texture) == textures.end())
+        textures.push_back(piece.look.texture);
+  return textures;
+}
+
+void appendPiece(const MeshPiece& piece, const std::vector<SharedTexture>& textures, std::string& bytes) {
   appendAll(piece.corners, bytes);
   appendAll(piece.normals, bytes);
   appendAll(piece.smoothing, bytes);
@@ -88,9 +98,13 @@ void appendPiece(const MeshPiece& piece, std::string& bytes) {
   append(piece.material, bytes);
   appendAll(piece.look.name, bytes);
   for (const float channel : piece.look.baseColor) append(channel, bytes);
+  appendAll(piece.textureCoordinates, bytes);
+  appendAll(piece.textureFault, bytes);
+  const auto texture = std::find(textures.begin(), textures.end(), piece.look.texture);  // the end: none
+  append(static_cast<std::uint64_t>(texture - textures.begin()), bytes);
 }
 
-MeshPiece readPiece(Source& source) {
+MeshPiece readPiece(const std::vector<SharedTexture>& textures, Source& source) {
   MeshPiece piece;
   piece.corners = source.all<std::vector<Vec3>>();
   piece.normals = source.all<std::vector<Vec3f>>();
@@ -99,10 +113,18 @@ MeshPiece readPiece(Source& source) {
   piece.material = source.number<int>();
   piece.look.name = source.all<std::string>();
   for (float& channel : piece.look.baseColor) channel = source.number<float>();
+  piece.textureCoordinates = source.all<std::vector<Vec2f>>();
+  piece.textureFault = source.all<std::string>();
+  const auto texture = source.number<std::uint64_t>();
+  source.require(texture <= textures.size());
+  if (texture < textures.size()) piece.look.texture = textures[texture];
 
   const std::size_t corners = piece.corners.size();
   source.require(corners % 3 == 0 && piece.smoothing.size() == corners / 3);
   source.require(piece.normals.empty() || piece.normals.size() == corners);
+  source.require(piece.textureCoordinates.empty() || piece.textureCoordinates.size() == corners);
+  source.require(std::all_of(piece.textureCoordinates.begin(), piece.textureCoordinates.end(),
+                             [](const Vec2f& place) { return place.allFinite(); }));
   source.require(std::all_of(piece.corners.begin(), piece.corners.end(), [](const Vec3& v) { return v.allFinite(); }));
   const auto isColor = [](float channel) { return channel >= 0 && channel <= 1; };
   source.require(std::all_of(piece.look.baseColor.begin(), piece.look.baseColor.end(), isColor));
@@ -113,23 +135,34 @@ MeshPiece readPiece(Source& source) {
 
 std::string bytesOf(const std::vector<ImportedObject>& objects) {
   std::string bytes;
+  const std::vector<SharedTexture> textures = texturesOf(objects);
+  append(std::uint64_t{textures.size()}, bytes);
+  for (const SharedTexture& texture : textures) {
+    appendAll(texture->name, bytes);
+    appendAll(texture->bytes, bytes);
+  }
   append(std::uint64_t{objects.size()}, bytes);
   for (const ImportedObject& object : objects) {
     appendAll(object.name, bytes);
     append(std::uint64_t{object.pieces.size()}, bytes);
-    for (const MeshPiece& piece : object.pieces) appendPiece(piece, bytes);
+    for (const MeshPiece& piece : object.pieces) appendPiece(piece, textures, bytes);
   }
   return bytes;
 }
 
 std::vector<ImportedObject> objectsFromBytes(const std::string& bytes, const std::string& path) {
-  constexpr std::size_t kMinSize = sizeof(std::uint64_t);  // bytes, of an object or a piece
+  constexpr std::size_t kMinSize = sizeof(std::uint64_t);  // bytes, of a texture, an object or a piece
   Source source(bytes, path);
+  std::vector<SharedTexture> textures;
+  for (std::uint64_t left = source.count(kMinSize); left > 0; --left) {
+    std::string name = source.all<std::string>();
+    textures.push_back(std::make_shared<const Texture>(Texture{std::move(name), source.all<std::string>()}));
+  }
   std::vector<ImportedObject> objects;
   for (std::uint64_t left = source.count(kMinSize); left > 0; --left) {
     ImportedObject object{source.all<std::string>(), {}};
     for (std::uint64_t pieces = source.count(kMinSize); pieces > 0; --pieces)
-      object.pieces.push_back(readPiece(source));
+      object.pieces.push_back(readPiece(textures, source));
     objects.push_back(std::move(object));
   }
   source.requireEnd();

@@ -66,6 +66,13 @@ void turnUp(UpAxis up, const std::string& path, std::vector<ImportedObject>& obj
     }
 }
 
+/// Vertices with coordinates on a texture that nobody draws would be more than there need be.
+void dropUnusedCoordinates(std::vector<ImportedObject>& objects) {
+  for (ImportedObject& object : objects)
+    for (MeshPiece& piece : object.pieces)
+      if (!piece.look.texture) piece.textureCoordinates.clear();
+}
+
 /// The objects of a file as they are wound there.
 std::vector<LoadedModel> assembleObjects(const std::string& path, std::vector<ImportedObject> imported, double scale,
                                          ModelParts parts) {
@@ -101,6 +108,7 @@ LoadedModel joinOutwards(const std::string& name, bool fillsHoles, std::vector<L
 /// The object that `reference` names, or all as one.
 LoadedModel chosenModel(const MeshReference& reference, std::vector<ImportedObject> imported) {
   turnUp(reference.upAxis, reference.path, imported);
+  if (!reference.isTextured) dropUnusedCoordinates(imported);
   std::vector<LoadedModel> objects =
       assembleObjects(reference.path, std::move(imported), reference.scale, ModelParts::solidAndDrawn);
   if (reference.object.empty() && objects.size() > 1)
@@ -122,7 +130,9 @@ std::size_t sizeOf(const std::vector<ImportedObject>& objects) {
   std::size_t bytes = 0;
   for (const ImportedObject& object : objects)
     for (const MeshPiece& piece : object.pieces)
-      bytes += piece.corners.size() * sizeof(Vec3) + piece.normals.size() * sizeof(Vec3f) + sizeof(MeshPiece);
+      bytes += piece.corners.size() * sizeof(Vec3) + piece.normals.size() * sizeof(Vec3f) +
+               piece.textureCoordinates.size() * sizeof(Vec2f) + sizeof(MeshPiece) +
+               (piece.look.texture ? piece.look.texture->bytes.size() : 0);
   return bytes;
 }
 
@@ -145,7 +155,9 @@ std::string keyOf(const std::string& path) {
 }  // namespace
 
 std::vector<LoadedModel> loadObjects(const std::string& path, double scale, ModelParts parts) {
-  std::vector<LoadedModel> objects = assembleObjects(path, importObjects(path), scale, parts);
+  std::vector<ImportedObject> imported = importObjects(path);
+  dropUnusedCoordinates(imported);
+  std::vector<LoadedModel> objects = assembleObjects(path, std::move(imported), scale, parts);
   for (LoadedModel& object : objects) mend(true, object);
   return objects;
 }

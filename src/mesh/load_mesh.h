@@ -17,6 +17,7 @@ struct MeshReference {
   double scale = 1;    // file's units to metres, > 0
   UpAxis upAxis = UpAxis::ofFormat;
   bool fillsHoles = false;  // small ones, of what needs a volume
+  bool isTextured = false;  // texture coordinates are wanted, whether or not materials of the file have textures
 };
 
 /// A model with what had to be mended on the way.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/types.h"
+#include "mesh/texture.h"
 
 namespace cradle {
 
@@ -23,12 +24,14 @@ struct ModelMaterial {
   Vec3f baseColor = Vec3f::Constant(0.69f);  // sRGB, 0..1
   std::uint32_t firstTriangle = 0;  // triangles [firstTriangle, firstTriangle + triangleCount) of the drawn mesh
   std::uint32_t triangleCount = 0;
+  SharedTexture texture = {};  // in which baseColor is a factor; none: unset
 };
 
 /// What a picture shows of a model: a vertex per corner with its own normal, so that smoothing groups are kept.
 struct DrawnMesh {
-  std::vector<Vec3> vertices;  // m, body's frame
-  std::vector<Vec3f> normals;  // unit, one per vertex
+  std::vector<Vec3> vertices;                  // m, body's frame
+  std::vector<Vec3f> normals;                  // unit, one per vertex
+  std::vector<Vec2f> textureCoordinates = {};  // of each vertex, from the left and from below, 1 across; or none
   std::vector<Triangle> triangles;
   std::vector<ModelMaterial> materials;  // ranges cover all triangles, in order
 };

@@ -1,6 +1,7 @@
 #include "render/appearance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -60,6 +61,18 @@ BodySolid solidOf(const DrawnMesh& mesh, const BodyPart& part) {
   return solid;
 }
 
+DrawnTexture drawnTexture(const Texture& texture) {
+  DrawnTexture drawn{decodeTexture(texture), Vec3f::Zero()};
+  std::array<float, 256> linear{};
+  for (int level = 0; level < 256; ++level)
+    linear[static_cast<std::size_t>(level)] = linearFromSrgb(Vec3f::Constant(static_cast<float>(level) / 255)).x();
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < drawn.pixels.rgb.size(); ++i)
+    sum[static_cast<Eigen::Index>(i % 3)] += static_cast<double>(linear[drawn.pixels.rgb[i]]);
+  drawn.mean = (3 * sum / static_cast<double>(drawn.pixels.rgb.size())).cast<float>();
+  return drawn;
+}
+
 /// Fills the catalogue of meshes, one entry for all bodies that share a shape.
 class Catalogue {
  public:
@@ -91,11 +104,13 @@ class Catalogue {
   Key keyOf(const Shape& shape) const;
   DrawnMesh tessellateShape(const Shape& shape) const;
   std::vector<BodyPart> partsOfModel(const ModelShape& shape, const Material& material);
+  int indexOf(const SharedTexture& texture);  // into Appearance::textures; -1 of none
 
   const Scene& scene_;
   double pixelsPerMetre_;
   std::vector<Key> keys_;
   std::vector<DrawnMesh> meshes_;
+  std::vector<SharedTexture> textures_;
 };
 
 Catalogue::Key Catalogue::keyOf(const Shape& shape) const {
@@ -141,16 +156,29 @@ void Catalogue::moveTo(Appearance& appearance) {
     appearance.meshIsClosed.push_back(!isModel || checkSolid(scene_.models[model].solid).isClosed);
   }
   appearance.meshes = std::move(meshes_);
+  for (const SharedTexture& texture : textures_) appearance.textures.push_back(drawnTexture(*texture));
 }
 
 std::vector<BodyPart> Catalogue::partsOfModel(const ModelShape& shape, const Material& material) {
   const int mesh = meshOf(shape);
   const auto& ranges = meshes_[static_cast<std::size_t>(mesh)].materials;
   std::vector<BodyPart> parts;
-  for (const ModelMaterial& range : ranges)
+  for (const ModelMaterial& range : ranges) {
     parts.push_back({mesh, range.firstTriangle, range.triangleCount, surfaceOf(material, range.baseColor)});
-  if (ranges.empty() || material.baseColor) parts = {{mesh, 0, triangleCount(mesh), surfaceOf(material, {})}};
+    parts.back().surface.texture = indexOf(textureOf(material, range.texture));
+  }
+  if (ranges.empty() || material.baseColor || material.texture) {
+    parts = {{mesh, 0, triangleCount(mesh), surfaceOf(material, {})}};
+    parts.back().surface.texture = indexOf(material.texture);
+  }
   return parts;
+}
+
+int Catalogue::indexOf(const SharedTexture& texture) {
+  if (!texture) return -1;
+  const auto index = std::find(textures_.begin(), textures_.end(), texture) - textures_.begin();
+  if (index == std::ssize(textures_)) textures_.push_back(texture);
+  return static_cast<int>(index);
 }
 
 /// The sphere that each model is, if it is one.
@@ -235,14 +263,23 @@ ArrowLook addArrow(double longest, Appearance& appearance) {
 }  // namespace
 
 Surface surfaceOf(const Material& material, const std::optional<Vec3f>& fileColor) {
-  const Vec3f color = material.baseColor ? *material.baseColor : fileColor.value_or(Vec3f::Constant(0.69f));
+  const Vec3f usual = material.texture ? Vec3f(Vec3f::Ones()) : fileColor.value_or(Vec3f::Constant(0.69f));
+  const Vec3f color = material.baseColor.value_or(usual);
   return {linearFromSrgb(color), static_cast<float>(material.metallic), static_cast<float>(material.roughness),
           material.pattern,      linearFromSrgb(material.patternColor), 0};
 }
 
-Surface withoutPattern(const Surface& surface) {
-  if (surface.pattern == Pattern::none) return surface;
-  return {(surface.color + surface.patternColor) / 2, surface.metallic, surface.roughness};
+SharedTexture textureOf(const Material& material, const SharedTexture& ofFile) {
+  if (material.texture) return material.texture;
+  return material.baseColor || material.pattern != Pattern::none ? nullptr : ofFile;
+}
+
+Surface inSmall(const Surface& surface, const Appearance& appearance) {
+  Vec3f mean = surface.color;
+  if (surface.pattern != Pattern::none) mean = (surface.color + surface.patternColor) / 2;
+  if (surface.texture >= 0)
+    mean = mean.cwiseProduct(appearance.textures[static_cast<std::size_t>(surface.texture)].mean);
+  return {mean, surface.metallic, surface.roughness};
 }
 
 Vec3f linearFromSrgb(const Vec3f& color) {

@@ -16,6 +16,7 @@ struct Surface {
   Pattern pattern = Pattern::none;
   Vec3f patternColor = Vec3f::Zero();  // linear, 0..1
   float patternCell = 0;               // m, of a stripe or square
+  int texture = -1;                    // index into Appearance::textures, times `color`; -1: none
   bool operator==(const Surface&) const = default;
 };
 
@@ -53,6 +54,12 @@ struct BodyAppearance {
       false;  // exactly round; else the sphere stands for a mesh in mirrors and contact shadows alone
 };
 
+/// A texture as it is drawn.
+struct DrawnTexture {
+  TexturePixels pixels;
+  Vec3f mean;  // linear, 0..1
+};
+
 /// An endless plane, drawn as ground.
 struct Ground {
   int body = 0;                 // index into Scene::bodies
@@ -72,6 +79,7 @@ struct ArrowLook {
 /// What bodies look like, the same in every frame.
 struct Appearance {
   std::vector<DrawnMesh> meshes;
+  std::vector<DrawnTexture> textures;
   std::vector<bool> meshIsClosed;  // then its inside is never seen
   std::vector<BodyAppearance> bodies;
   std::optional<Ground> ground;
@@ -82,11 +90,14 @@ struct Appearance {
 /// `pixelsPerMetre` at the distance of the scene decides how finely round things are divided.
 Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPerMetre);
 
-/// Of a scene's material; where it names no colour, that of a model's file (sRGB) stands.
+/// Of a scene's material; where it names no colour, that of a model's file (sRGB) stands. Its texture is left out.
 Surface surfaceOf(const Material& material, const std::optional<Vec3f>& fileColor);
 
-/// The surface as it is seen in small mirrors: a pattern by its mean colour.
-Surface withoutPattern(const Surface& surface);
+/// The texture of a scene's material; where that names neither a colour nor a pattern, that of a model's file stands.
+SharedTexture textureOf(const Material& material, const SharedTexture& ofFile);
+
+/// The surface as it is seen in small mirrors: a pattern, or a texture, by its mean colour.
+Surface inSmall(const Surface& surface, const Appearance& appearance);
 
 /// Linear colour of an sRGB one, channels 0..1.
 Vec3f linearFromSrgb(const Vec3f& color);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "math/rotation.h"
 #include "render/body_place.h"
@@ -27,18 +28,20 @@ void appendBody(const BodyAppearance& look, const RigidTransform& worldFromBody,
   }
 }
 
-void appendRound(const BodyAppearance& look, const RigidTransform& worldFromBody, int body, DrawList& list) {
+void appendRound(const Appearance& appearance, const RigidTransform& worldFromBody, int body, DrawList& list) {
+  const BodyAppearance& look = appearance.bodies[static_cast<std::size_t>(body)];
   if (look.cylinder)
     list.cylinders.push_back({worldFromBody.translation, worldFromBody.rotation * Vec3::UnitY(), look.cylinder->radius,
                               look.cylinder->length, look.surface, 0, 0, worldFromBody.rotation * Vec3::UnitX()});
   if (!look.sphere) return;
   const Vec3 center = worldFromBody * look.sphere->center;
-  list.occluders.push_back({center, look.sphere->radius, withoutPattern(look.surface), body});
+  list.occluders.push_back({center, look.sphere->radius, inSmall(look.surface, appearance), body});
   if (look.isDrawnAsSphere)
     list.spheres.push_back({center, look.sphere->radius, look.surface, 0, 0, worldFromBody.rotation});
 }
 
-void appendSolids(const BodyAppearance& look, const RigidTransform& worldFromBody, int body, DrawList& list) {
+void appendSolids(const Appearance& appearance, const RigidTransform& worldFromBody, int body, DrawList& list) {
+  const BodyAppearance& look = appearance.bodies[static_cast<std::size_t>(body)];
   for (const BodySolid& solid : look.solids) {
     const RigidTransform place{worldFromBody.rotation, worldFromBody * Vec3(solid.box.center())};
     const Vec3 half = solid.box.sizes() / 2;
@@ -46,7 +49,7 @@ void appendSolids(const BodyAppearance& look, const RigidTransform& worldFromBod
     if (look.sphere || solid.kind == ContactShadowShape::ellipsoid) continue;
     const double middle = std::max(std::min(half.x(), half.y()), std::min(std::max(half.x(), half.y()), half.z()));
     list.occluders.push_back(
-        {place.translation, kBoxReach * middle, withoutPattern(solid.surface), body, half, place.rotation});
+        {place.translation, kBoxReach * middle, inSmall(solid.surface, appearance), body, half, place.rotation});
   }
 }
 
@@ -174,8 +177,8 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const int body = static_cast<int>(i);
     appendBody(appearance.bodies[i], places[i], list);
-    appendRound(appearance.bodies[i], places[i], body, list);
-    appendSolids(appearance.bodies[i], places[i], body, list);
+    appendRound(appearance, places[i], body, list);
+    appendSolids(appearance, places[i], body, list);
     appendWall(scene, appearance, view, i, seen.viewpoint, list);
     bodyOfMesh.resize(list.meshes.size(), body);
     bodyOfSphere.resize(list.spheres.size(), body);
@@ -189,7 +192,8 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
   appendPushArrows(appearance, view, seen.frame, places, list);
   appendMotorArrows(scene, appearance, seen.frame, places, list);
   std::stable_sort(list.meshes.begin(), list.meshes.end(), [](const MeshItem& a, const MeshItem& b) {
-    return std::pair(a.mesh, a.firstTriangle) < std::pair(b.mesh, b.firstTriangle);
+    return std::tuple(a.mesh, a.firstTriangle, a.surface.texture) <
+           std::tuple(b.mesh, b.firstTriangle, b.surface.texture);
   });
   return list;
 }

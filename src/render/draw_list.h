@@ -84,7 +84,7 @@ struct ContactShadowItem {
 
 /// A picture as plain data, in a fixed order: OpenGL comes after.
 struct DrawList {
-  std::vector<MeshItem> meshes;  // grouped by mesh and range
+  std::vector<MeshItem> meshes;  // grouped by mesh, range and texture
   std::vector<MeshItem> walls;   // planes other than the ground; throw no shadow, for light comes in through them
   std::vector<SphereItem> spheres;
   std::vector<CylinderItem> cylinders;

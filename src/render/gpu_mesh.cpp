@@ -11,6 +11,7 @@ namespace {
 
 constexpr unsigned int kFirstInstanceAttribute = 2;
 constexpr unsigned int kInstanceAttributes = 6;
+constexpr unsigned int kCoordinateAttribute = kFirstInstanceAttribute + kInstanceAttributes;
 constexpr int kInnermostRing = 8;  // corners of a half sphere's ring next to its middle
 
 const void* byteOffset(std::size_t bytes) {
@@ -51,16 +52,22 @@ void InstanceBuffer::upload(const std::vector<Instance>& instances) {
 }
 
 GpuMesh::GpuMesh(const DrawnMesh& mesh) {
+  const bool isTextured = !mesh.textureCoordinates.empty();
+  const std::size_t numbers = isTextured ? 8 : 6, stride = numbers * sizeof(float);
   std::vector<float> vertices;
-  vertices.reserve(6 * mesh.vertices.size());
+  vertices.reserve(numbers * mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vec3f position = mesh.vertices[i].cast<float>();
     vertices.insert(vertices.end(), position.begin(), position.end());
     vertices.insert(vertices.end(), mesh.normals[i].begin(), mesh.normals[i].end());
+    if (!isTextured) continue;
+    const Vec2f& place = mesh.textureCoordinates[i];
+    vertices.insert(vertices.end(), {place.x(), 1 - place.y()});  // the rows of pictures begin at the top
   }
   upload(vertices, flatten(mesh.triangles));
-  describeAttribute(0, 3, 6 * sizeof(float), 0);
-  describeAttribute(1, 3, 6 * sizeof(float), 3 * sizeof(float));
+  describeAttribute(0, 3, stride, 0);
+  describeAttribute(1, 3, stride, 3 * sizeof(float));
+  if (isTextured) describeAttribute(kCoordinateAttribute, 2, stride, 6 * sizeof(float));
 }
 
 GpuMesh::GpuMesh(const std::vector<float>& vertices, int components, const std::vector<std::uint32_t>& indices) {

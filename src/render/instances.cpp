@@ -86,8 +86,10 @@ void packBatches(const DrawList& list, PackedDrawList& packed) {
     const MeshItem& item = list.meshes[i];
     const bool continues = !packed.meshBatches.empty() && packed.meshBatches.back().mesh == item.mesh &&
                            packed.meshBatches.back().firstTriangle == item.firstTriangle &&
-                           packed.meshBatches.back().triangleCount == item.triangleCount;
-    if (!continues) packed.meshBatches.push_back({item.mesh, item.firstTriangle, item.triangleCount, i, 0});
+                           packed.meshBatches.back().triangleCount == item.triangleCount &&
+                           packed.meshBatches.back().texture == item.surface.texture;
+    if (!continues)
+      packed.meshBatches.push_back({item.mesh, item.firstTriangle, item.triangleCount, i, 0, item.surface.texture});
     ++packed.meshBatches.back().instanceCount;
   }
 }
@@ -197,7 +199,7 @@ std::array<float, 16> numbersOf(const OccluderItem& item, const RenderSetup& set
 
 bool isSame(const MeshItem& a, const MeshItem& b, const RenderSetup& setup) {
   return a.mesh == b.mesh && a.firstTriangle == b.firstTriangle && a.triangleCount == b.triangleCount &&
-         haveSameNumbers(a, b, setup);
+         a.surface.texture == b.surface.texture && haveSameNumbers(a, b, setup);
 }
 
 bool isSame(const SphereItem& a, const SphereItem& b, const RenderSetup& setup) {

@@ -13,6 +13,7 @@ struct Batch {
   int mesh = 0;  // index into Appearance::meshes, or into kOutlines for what is round
   std::uint32_t firstTriangle = 0, triangleCount = 0;
   std::size_t firstInstance = 0, instanceCount = 0;
+  int texture = -1;  // index into Appearance::textures; -1: none
 };
 
 /// Corners around the outlines that spheres and the ends of cylinders are drawn with, coarse to fine.

@@ -76,6 +76,7 @@ void forSeen(const std::vector<PixelRectangle>& seen, std::size_t first, std::si
 ItemDrawer::ItemDrawer(const Appearance& appearance, const RenderSetup& setup)
     : appearance_(appearance),
       setup_(setup),
+      white_({1, 1, {255, 255, 255}}),
       coilMesh_(makeTube(kMaxCoilTurns * kSegmentsPerTurn, kSegmentsAround)),
       ropeMesh_(makeTube(kRopeSegments, kSegmentsAround)),
       square_({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
@@ -83,6 +84,7 @@ ItemDrawer::ItemDrawer(const Appearance& appearance, const RenderSetup& setup)
     meshes_.emplace_back(appearance.meshes[i]);
     radiusInside_.push_back(appearance.meshIsClosed[i] ? radiusInside(appearance.meshes[i]) : 0);
   }
+  for (const DrawnTexture& texture : appearance.textures) textures_.emplace_back(texture.pixels);
   for (const int outline : kOutlines) {
     halfSpheres_.push_back(makeHalfSphere(outline));
     halfCylinders_.push_back(makeHalfCylinder(outline));
@@ -163,6 +165,7 @@ void ItemDrawer::drawMesh(const Batch& batch, std::size_t instance, const SeenIt
 void ItemDrawer::drawMeshes(const SeenItems& seen, const PixelRectangle& area) const {
   for (const Batch& batch : packed_.meshBatches) {
     const auto mesh = static_cast<std::size_t>(batch.mesh);
+    textureOf(batch).bind(kColorUnit);
     if (appearance_.meshIsClosed[mesh]) glEnable(GL_CULL_FACE);
     forSeen(seen.meshes, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
       if (count == 1 && !seen.meshRuns[first].empty() && !isInside(seen.meshes[first], area))
@@ -172,6 +175,11 @@ void ItemDrawer::drawMeshes(const SeenItems& seen, const PixelRectangle& area) c
     });
     glDisable(GL_CULL_FACE);
   }
+  white_.bind(kColorUnit);
+}
+
+const GpuTexture& ItemDrawer::textureOf(const Batch& batch) const {
+  return batch.texture < 0 ? white_ : textures_[static_cast<std::size_t>(batch.texture)];
 }
 
 void ItemDrawer::drawWalls() const {

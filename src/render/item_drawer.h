@@ -4,6 +4,7 @@
 
 #include "render/drawn_hull.h"
 #include "render/gpu_mesh.h"
+#include "render/gpu_texture.h"
 #include "render/instances.h"
 #include "render/tile_mask.h"
 
@@ -43,6 +44,7 @@ class ItemDrawer {
   template <typename Place>
   void findSeen(const DrawList& list, const std::vector<MeshBounds>& meshBounds, const Place& place,
                 SeenItems& seen) const;
+  const GpuTexture& textureOf(const Batch& batch) const;
   void drawMesh(const Batch& batch, std::size_t instance, const SeenItems& seen, const PixelRectangle& area) const;
   void leaveOutHidden(const DrawList& list, const std::vector<MeshBounds>& meshBounds);
 
@@ -51,6 +53,8 @@ class ItemDrawer {
   InstanceBuffer meshInstances_, wallInstances_, sphereInstances_, cylinderInstances_, tubeInstances_,
       contactShadowInstances_;
   std::vector<GpuMesh> meshes_, halfSpheres_, halfCylinders_;
+  std::vector<GpuTexture> textures_;
+  GpuTexture white_;  // of what has none
   GpuMesh coilMesh_, ropeMesh_, square_;
   PackedDrawList packed_;
   SeenItems inPicture_, inShadowMap_;

@@ -224,6 +224,14 @@ double farthestTarget(const View& view) {
   return farthest;
 }
 
+bool haveTextures(const Scene& scene) {
+  const auto has = [](const auto& material) { return material.texture != nullptr; };
+  return std::any_of(scene.materials.begin(), scene.materials.end(), has) ||
+         std::any_of(scene.models.begin(), scene.models.end(), [&](const Model& model) {
+           return std::any_of(model.drawn.materials.begin(), model.drawn.materials.end(), has);
+         });
+}
+
 }  // namespace
 
 double pixelAngle(const RenderSetup& setup) {
@@ -257,6 +265,7 @@ RenderSetup makeRenderSetup(const Scene& scene, const View& view, const std::opt
   setup.lighting = makeLighting(scene, ground);
   setup.hasPatterns = std::any_of(scene.materials.begin(), scene.materials.end(),
                                   [](const Material& material) { return material.pattern != Pattern::none; });
+  setup.hasTextures = haveTextures(scene);
   const double seen = heightOfPicture(view, setup.origin);
   setup.shadow = makeShadowView(setup.lighting.lamps[0].towards, seen);
   setup.ground = ground;
@@ -267,8 +276,9 @@ RenderSetup makeRenderSetup(const Scene& scene, const View& view, const std::opt
 }
 
 std::string shaderDefinitions(const RenderSetup& setup) {
-  return fmt::format("#define HAS_GROUND {}\n#define FILL_LIGHTS {}\n#define PATTERNS {}\n", setup.ground ? 1 : 0,
-                     setup.lighting.lamps.size() - 1, setup.hasPatterns ? 1 : 0);
+  return fmt::format("#define HAS_GROUND {}\n#define FILL_LIGHTS {}\n#define PATTERNS {}\n#define TEXTURES {}\n",
+                     setup.ground ? 1 : 0, setup.lighting.lamps.size() - 1, setup.hasPatterns ? 1 : 0,
+                     setup.hasTextures ? 1 : 0);
 }
 
 void setCamera(const RenderSetup& setup, const ShaderProgram& program) {
@@ -298,6 +308,7 @@ void setUniforms(const RenderSetup& setup, const ShaderProgram& program) {
   program.set("contactShadowMap", static_cast<int>(kContactShadowUnit));
   program.set("occluderTexels", static_cast<int>(kOccluderUnit));
   program.set("nearOccluderTexels", static_cast<int>(kNearOccluderUnit));
+  program.set("colorMap", static_cast<int>(kColorUnit));
 }
 
 }  // namespace cradle

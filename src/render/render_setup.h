@@ -64,6 +64,7 @@ struct ShadedRegion {
 struct RenderSetup {
   int width = 0, height = 0;
   bool hasPatterns = false;  // of materials
+  bool hasTextures = false;  // of materials, or of models
   Camera camera;
   FrameLayout layout;
   double size = 1;  // m: View::size()
@@ -84,7 +85,7 @@ constexpr int kContactShadowMapSize = 256;
 constexpr double kLowestLight = 0.05;  // sine of the height below which the ground has no shadows
 
 /// Texture units that the shaders' samplers are bound to.
-enum TextureUnit { kShadowUnit = 0, kBlockUnit, kContactShadowUnit, kOccluderUnit, kNearOccluderUnit };
+enum TextureUnit { kShadowUnit = 0, kBlockUnit, kContactShadowUnit, kOccluderUnit, kNearOccluderUnit, kColorUnit };
 
 RenderSetup makeRenderSetup(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width,
                             int height);

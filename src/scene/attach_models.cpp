@@ -62,6 +62,9 @@ std::optional<ModelFacts> load(const BodyDraft& draft, SceneDraft& scene, const 
   try {
     LoadedModel loaded = models(draft.mesh);
     loaded.model.name = modelName(draft.mesh);
+    if (draft.mesh.isTextured && loaded.model.drawn.textureCoordinates.empty())
+      throw Error(ErrorKind::mesh, draft.mesh.path,
+                  "has no texture coordinates (UV), which the texture of its material needs; export it with them");
     const SolidReport report = checkSolid(loaded.model.solid);
     warnOfNotes(*draft.meshField, loaded.notes, report.notes, faults.text);
     ModelFacts facts = examine(loaded.model, report);

@@ -9,6 +9,7 @@
 #include "core/read_file.h"
 #include "mesh/mesh_library.h"
 #include "scene/attach_models.h"
+#include "scene/attach_textures.h"
 #include "scene/complete_links.h"
 #include "scene/json_document.h"
 #include "scene/parse_bodies.h"
@@ -30,6 +31,33 @@ std::string textOf(const std::string& path) {
   return text;
 }
 
+namespace fs = std::filesystem;
+
+/// Files that a scene names: relative paths start from its folder.
+class AssetFolder {
+ public:
+  /// Throws Error(usage) if `assetRoot` is no folder; empty: there is no limit.
+  AssetFolder(const std::string& scenePath, const std::string& assetRoot) : folder_(fs::path(scenePath).parent_path()) {
+    if (assetRoot.empty()) return;
+    std::error_code failed;
+    root_ = fs::canonical(assetRoot, failed);
+    if (!fs::is_directory(root_, failed))
+      throw Error(ErrorKind::usage, assetRoot, "is no folder; name one that the meshes are in");
+  }
+
+  /// Throws Error(mesh) if that is not below the root.
+  std::string pathOf(const std::string& named) const {
+    const std::string path = (folder_ / named).string();
+    if (!root_.empty() && !isBelow(path, root_))
+      throw Error(ErrorKind::mesh, path,
+                  fmt::format("is not below {}, and no other files are allowed here", root_.string()));
+    return path;
+  }
+
+ private:
+  fs::path folder_, root_;
+};
+
 // All that the text alone says.
 SceneDraft parseText(const JsonValue& document, FaultList& faults) {
   SceneDraft draft;
@@ -50,34 +78,36 @@ SceneDraft parseText(const JsonValue& document, FaultList& faults) {
 
 std::string modelName(const MeshReference& reference) {
   constexpr std::array kUp = {"", "^x", "^y", "^z"};
-  return fmt::format("{}#{}@{}{}{}", reference.path, reference.object, reference.scale,
-                     kUp[static_cast<std::size_t>(reference.upAxis)], reference.fillsHoles ? "+filled" : "");
+  return fmt::format("{}#{}@{}{}{}{}", reference.path, reference.object, reference.scale,
+                     kUp[static_cast<std::size_t>(reference.upAxis)], reference.fillsHoles ? "+filled" : "",
+                     reference.isTextured ? "+textured" : "");
 }
 
 ModelSource modelFilesBeside(const std::string& scenePath, const std::string& assetRoot) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::path(scenePath).parent_path();
-  std::error_code failed;
-  const fs::path root = assetRoot.empty() ? fs::path() : fs::canonical(assetRoot, failed);
-  if (!assetRoot.empty() && !fs::is_directory(root, failed))
-    throw Error(ErrorKind::usage, assetRoot, "is no folder; name one that the meshes are in");
-  return [folder, root, library = std::make_shared<MeshLibrary>()](const MeshReference& reference) {
-    const std::string path = (folder / reference.path).string();
-    if (!root.empty() && !isBelow(path, root))
-      throw Error(ErrorKind::mesh, path,
-                  fmt::format("is not below {}, and no other meshes are allowed here", root.string()));
+  return [files = AssetFolder(scenePath, assetRoot),
+          library = std::make_shared<MeshLibrary>()](const MeshReference& reference) {
     MeshReference onDisk = reference;
-    onDisk.path = path;
+    onDisk.path = files.pathOf(reference.path);
     return library->load(onDisk);
   };
 }
 
-LoadedScene parseScene(const std::string& text, const std::string& path, const ModelSource& models) {
+TextureSource textureFilesBeside(const std::string& scenePath, const std::string& assetRoot) {
+  return [files = AssetFolder(scenePath, assetRoot)](const std::string& path) {
+    Texture texture = *readTexture(files.pathOf(path));
+    texture.name = path;
+    return std::make_shared<const Texture>(std::move(texture));
+  };
+}
+
+LoadedScene parseScene(const std::string& text, const std::string& path, const ModelSource& models,
+                       const TextureSource& textures) {
   FaultList textFaults(path, ErrorKind::scene), meshFaults(path, ErrorKind::mesh);
   const JsonValue document = readJson(text, textFaults);
   SceneDraft draft = parseText(document, textFaults);
   textFaults.throwIfAny();
 
+  attachTextures(draft, textures, textFaults, meshFaults);
   attachModels(draft, models, textFaults, meshFaults);
   completeLinks(draft, textFaults);
   textFaults.throwIfAny();
@@ -90,7 +120,7 @@ LoadedScene parseScene(const std::string& text, const std::string& path, const M
 }
 
 LoadedScene loadScene(const std::string& path, const std::string& assetRoot) {
-  return parseScene(textOf(path), path, modelFilesBeside(path, assetRoot));
+  return parseScene(textOf(path), path, modelFilesBeside(path, assetRoot), textureFilesBeside(path, assetRoot));
 }
 
 }  // namespace cradle

@@ -11,13 +11,20 @@ namespace cradle {
 /// the scene file's own, not yet resolved. Throws Error(mesh) if there is no such model.
 using ModelSource = std::function<LoadedModel(const MeshReference&)>;
 
+/// Where the textures of its materials come from, likewise. Throws Error(mesh) if there is no such picture.
+using TextureSource = std::function<SharedTexture(const std::string& path)>;
+
 /// Name of the model in Scene::models and in trajectories: "path#object@scale", the path as the scene file has it,
-/// "^z" behind that with an axis that the scene names, and "+filled" where holes may be filled.
+/// "^z" behind that with an axis that the scene names, "+filled" where holes may be filled, and "+textured" with the
+/// texture of a material.
 std::string modelName(const MeshReference& reference);
 
 /// Reads models from files; relative paths start from the folder of the scene file. Files must be below `assetRoot`,
 /// through all links, unless that is empty. Throws Error(usage) if it is no folder.
 ModelSource modelFilesBeside(const std::string& scenePath, const std::string& assetRoot = "");
+
+/// Reads textures from files in the same way.
+TextureSource textureFilesBeside(const std::string& scenePath, const std::string& assetRoot = "");
 
 /// A scene, and what the user should know about it that is no error.
 struct LoadedScene {
@@ -32,6 +39,7 @@ struct LoadedScene {
 LoadedScene loadScene(const std::string& path, const std::string& assetRoot = "");
 
 /// The same for a text that is already in memory; `path` is for messages.
-LoadedScene parseScene(const std::string& text, const std::string& path, const ModelSource& models);
+LoadedScene parseScene(const std::string& text, const std::string& path, const ModelSource& models,
+                       const TextureSource& textures = readTexture);
 
 }  // namespace cradle

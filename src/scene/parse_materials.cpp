@@ -33,7 +33,18 @@ void parsePattern(ObjectReader& reader, Material& material) {
              "patternColor is the second colour of a pattern; give the material one, or leave it out");
 }
 
-Material parseMaterial(const Field& field, const std::string& name, FaultList& faults) {
+/// Of the material that will be number `material`.
+void parseTexture(ObjectReader& reader, const Material& described, int material, SceneDraft& draft) {
+  const auto field = reader.find("texture");
+  const auto path = field ? readText(*field, reader.faults()) : std::nullopt;
+  if (!path) return;
+  if (path->empty()) addFault(reader.faults(), *field, "the path of the texture is empty; name a PNG or JPEG file");
+  if (described.pattern != Pattern::none)
+    addFault(reader.faults(), *field, "a material has a texture or a pattern, not both; leave one out");
+  draft.textures.emplace(material, TextureDraft{*field, *path});
+}
+
+Material parseMaterial(const Field& field, const std::string& name, SceneDraft& draft, FaultList& faults) {
   const std::size_t faultsBefore = faults.count();
   Material material;
   material.name = name;
@@ -51,6 +62,7 @@ Material parseMaterial(const Field& field, const std::string& name, FaultList& f
   material.metallic = reader.number("metallic", kFraction, "", material.metallic);
   material.roughness = reader.number("roughness", kFraction, "", material.roughness);
   parsePattern(reader, material);
+  parseTexture(reader, material, static_cast<int>(draft.scene.materials.size()), draft);
   reader.rejectUnknownKeys();
   if (faults.count() == faultsBefore) {
     checkFrictions(material.staticFriction, material.dynamicFriction, field, faults);
@@ -122,7 +134,7 @@ void parseNamedMaterials(const Field& field, SceneDraft& draft, FaultList& fault
     if (member.key.empty()) addFault(faults, item, "the name of the material is empty; it needs one");
     checkName(item, member.key, faults);
     draft.materialIndex.emplace(member.key, static_cast<int>(draft.scene.materials.size()));
-    draft.scene.materials.push_back(parseMaterial(item, member.key, faults));
+    draft.scene.materials.push_back(parseMaterial(item, member.key, draft, faults));
   }
 }
 

@@ -34,6 +34,7 @@ struct Material {
   double roughness = 0.5;          // 0..1
   Pattern pattern = Pattern::none;
   Vec3f patternColor = Vec3f::Ones();  // sRGB, 0..1, beside baseColor
+  SharedTexture texture = {};          // of mesh shapes, in place of that of their file, times baseColor; or none
 };
 
 /// How two materials meet: as `pairs` says, else restitution minimum, frictions geometric mean.

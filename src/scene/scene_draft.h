@@ -59,12 +59,19 @@ struct LinkDraft {
   bool isSettled = false;       // ends known, length filled in
 };
 
+/// The picture that a material names as its texture.
+struct TextureDraft {
+  Field field;
+  std::string path;  // as the scene file has it
+};
+
 struct SceneDraft {
   Scene scene;
   std::vector<BodyDraft> bodies;
   std::vector<std::size_t> draftOfBody;  // for each of Scene::bodies
   std::vector<LinkDraft> links;
   std::map<std::string, int> materialIndex, bodyIndex;  // by name
+  std::map<int, TextureDraft> textures;                 // by material
 };
 
 /// Body or material with the name that `field` holds; a name that nothing has is a fault that says which `noun` it

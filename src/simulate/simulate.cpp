@@ -43,6 +43,8 @@ TrajectoryHeader headerOf(const Scene& scene, const Plan& plan) {
   header.plan = describe(plan, scene);
   header.accuracy = accuracyPromised(plan);
   header.meshes = scene.models;
+  for (const Material& material : scene.materials)
+    if (material.texture) header.textures.push_back(material.texture);
   for (const Body& body : scene.bodies) {
     const auto* model = std::get_if<ModelShape>(&body.shape);
     header.bodies.push_back({body.name, body.motion == Motion::dynamic, body.motion == Motion::driven,

@@ -101,8 +101,9 @@ struct TrajectoryHeader {
   std::string version;                 // of the program that made it
   std::string plan, accuracy, method;  // what was chosen, in words
   std::vector<BodyRecord> bodies;
-  std::vector<Model> meshes;             // named "path#object@scale"; drawn and solid
-  std::vector<JointRecord> joints = {};  // hinges, then sliders
+  std::vector<Model> meshes;                 // named "path#object@scale"; drawn and solid
+  std::vector<JointRecord> joints = {};      // hinges, then sliders
+  std::vector<SharedTexture> textures = {};  // of the scene's materials; once read, those of meshes behind them
 };
 
 /// Begins RunCost::promise of a run that became unstable and was finished then; the cause follows.

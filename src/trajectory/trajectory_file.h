@@ -105,6 +105,7 @@ class TrajectoryReader {
   struct Session;
   void readAll();
   void readMeta();
+  void readTextures();
   void readMeshes();
   void readBodies();
   void readJoints();

@@ -29,10 +29,12 @@ constexpr double kLatestTime = 1e10;        // s: scenes last 1e9 s at most
 constexpr int kLongestValue = 64'000'000;   // bytes of a value of the table meta: the longest scene that is read
 constexpr std::size_t kLongestName = 1100;  // bytes of a body's: 250 characters and the number of a copy
 constexpr const char* kMaterialsOfMesh =
-    "SELECT value ->> 'name', value ->> 'baseColor', value ->> 'firstTriangle', value ->> 'triangleCount' "
+    "SELECT value ->> 'name', value ->> 'baseColor', value ->> 'firstTriangle', value ->> 'triangleCount', "
+    "value ->> 'texture' "
     "FROM mesh, json_each(mesh.material) WHERE mesh.id = ?";
 constexpr const char* kTableNames = "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')";
 constexpr const char* kJointTableNames = "('joint', 'joint_state')";  // which earlier versions did not write
+constexpr const char* kTextureTableName = "('texture')";              // neither
 
 /// The first bytes of a file, or all; empty if it cannot be read.
 std::string fileHeaderOf(const std::string& path) {
@@ -72,6 +74,7 @@ void requireTrajectory(Database& database, const std::string& path) {
   if (!isOurs) throw Error(ErrorKind::usage, path, "is a SQLite database, but not a trajectory of cradle");
   requireStored(database, kTableNames);
   requireStored(database, kJointTableNames);
+  requireStored(database, kTextureTableName);
   const std::int64_t version = oneInteger(database, "PRAGMA user_version");
   if (version != kSchemaVersion)
     throw Error(
@@ -96,9 +99,18 @@ Vec3f colorFromHex(const std::string& text, const Database& database) {
   return Vec3f(static_cast<float>(red), static_cast<float>(green), static_cast<float>(blue)) / 255.0f;
 }
 
+/// The texture that a row names, or none.
+SharedTexture textureAt(const Statement& row, int column, const std::vector<SharedTexture>& textures,
+                        const Database& database) {
+  if (row.isNull(column)) return nullptr;
+  const std::int64_t id = row.integer(column);
+  if (id < 0 || id >= std::ssize(textures)) database.failDamaged("a mesh has a texture that is not there");
+  return textures[static_cast<std::size_t>(id)];
+}
+
 /// The ranges of a mesh of so many triangles, at most one for each; `query` is kMaterialsOfMesh.
 std::vector<ModelMaterial> readMaterials(Statement& query, const Database& database, std::int64_t mesh,
-                                         std::size_t triangles) {
+                                         std::size_t triangles, const std::vector<SharedTexture>& textures) {
   query.reset();
   query.bind(1, mesh);
   std::vector<ModelMaterial> materials;
@@ -110,7 +122,7 @@ std::vector<ModelMaterial> readMaterials(Statement& query, const Database& datab
       database.failDamaged("the materials of a mesh do not follow one another");
     next = first + count;
     materials.push_back({query.text(0), colorFromHex(query.text(1), database), static_cast<std::uint32_t>(first),
-                         static_cast<std::uint32_t>(count)});
+                         static_cast<std::uint32_t>(count), textureAt(query, 4, textures, database)});
   }
   return materials;
 }
@@ -125,6 +137,11 @@ void requireConsistent(const DrawnMesh& drawn, const Database& database) {
     database.failDamaged("a mesh has normals of no finite length");
   if (!std::all_of(drawn.vertices.begin(), drawn.vertices.end(), isPossiblePlace))
     database.failDamaged("a mesh has vertices whose coordinates are not finite and below 1e30 m");
+  const auto isFinite = [](const Vec2f& place) { return place.allFinite(); };
+  if (!drawn.textureCoordinates.empty() && drawn.textureCoordinates.size() != drawn.vertices.size())
+    database.failDamaged("a mesh has not one pair of texture coordinates a vertex");
+  if (!std::all_of(drawn.textureCoordinates.begin(), drawn.textureCoordinates.end(), isFinite))
+    database.failDamaged("a mesh has texture coordinates that are not finite");
   if (!std::all_of(drawn.triangles.begin(), drawn.triangles.end(), inRange))
     database.failDamaged("a mesh has triangles between vertices that it does not have");
   if (drawn.materials.empty()) return;
@@ -169,10 +186,15 @@ int bodyOrWorldAt(const Statement& row, int column, const TrajectoryHeader& head
   return row.isNull(column) ? -1 : bodyAt(row, column, header, database, who);
 }
 
+/// Earlier versions wrote fewer columns.
+bool hasColumn(Database& database, const char* table, const char* column) {
+  return oneInteger(database,
+                    fmt::format("SELECT count(*) FROM pragma_table_info('{}') WHERE name = '{}'", table, column)) == 1;
+}
+
 /// Earlier versions did not write the causes of what was dissipated.
 std::string energyQuery(Database& database) {
-  const bool hasCauses =
-      oneInteger(database, "SELECT count(*) FROM pragma_table_info('energy') WHERE name = 'numerical'") == 1;
+  const bool hasCauses = hasColumn(database, "energy", "numerical");
   return fmt::format(
       "SELECT kinetic, potential, dissipated, work, px, py, pz, lx, ly, lz, {} FROM energy WHERE frame = ?",
       hasCauses ? "impact, friction, damping, numerical" : "NULL, NULL, NULL, NULL");
@@ -219,6 +241,7 @@ TrajectoryReader::TrajectoryReader(TrajectoryWriter& finished) : session_(new Se
 
 void TrajectoryReader::readAll() {
   readMeta();
+  readTextures();
   readMeshes();
   readBodies();
   if (session_->joint) readJoints();
@@ -252,9 +275,24 @@ void TrajectoryReader::readMeta() {
     session_->database->failDamaged("its scene is not the one that was run (sceneHash)");
 }
 
+void TrajectoryReader::readTextures() {
+  Database& database = *session_->database;
+  if (countTables(database, kTextureTableName) == 0) return;
+  Statement query = database.prepare("SELECT id, name, image FROM texture ORDER BY id");
+  while (query.step()) {
+    if (query.integer(0) != std::ssize(header_.textures)) database.failDamaged("a texture is missing");
+    const auto bytes = query.blob(2);
+    header_.textures.push_back(std::make_shared<const Texture>(
+        Texture{query.text(1), std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())}));
+  }
+}
+
 void TrajectoryReader::readMeshes() {
   Database& database = *session_->database;
-  Statement query = database.prepare("SELECT id, name, vertices, normals, triangles FROM mesh ORDER BY id");
+  const bool hasCoordinates = hasColumn(database, "mesh", "textureCoordinates");
+  Statement query =
+      database.prepare(fmt::format("SELECT id, name, vertices, normals, triangles, {} FROM mesh ORDER BY id",
+                                   hasCoordinates ? "textureCoordinates" : "NULL"));
   Statement materials = database.prepare(kMaterialsOfMesh);
   while (query.step()) {
     if (query.integer(0) != static_cast<std::int64_t>(header_.meshes.size())) database.failDamaged("a mesh is missing");
@@ -263,7 +301,9 @@ void TrajectoryReader::readMeshes() {
     model.drawn.vertices = arrayOf<Vec3>(query, 2, database);
     model.drawn.normals = arrayOf<Vec3f>(query, 3, database);
     model.drawn.triangles = arrayOf<Triangle>(query, 4, database);
-    model.drawn.materials = readMaterials(materials, database, query.integer(0), model.drawn.triangles.size());
+    if (!query.isNull(5)) model.drawn.textureCoordinates = arrayOf<Vec2f>(query, 5, database);
+    model.drawn.materials =
+        readMaterials(materials, database, query.integer(0), model.drawn.triangles.size(), header_.textures);
     requireConsistent(model.drawn, database);
     model.solid = weld(model.drawn.vertices, model.drawn.triangles);
     header_.meshes.push_back(std::move(model));

@@ -21,7 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-static_assert(sizeof(Vec3) == 24 && sizeof(Vec3f) == 12 && sizeof(Triangle) == 12, "arrays are stored as they are");
+static_assert(sizeof(Vec3) == 24 && sizeof(Vec3f) == 12 && sizeof(Vec2f) == 8 && sizeof(Triangle) == 12,
+              "arrays are stored as they are");
 
 /// Makes room for a new .part. (SQLite itself drops a journal that it finds beside an empty file.)
 void removeOldPart(const std::string& part) {
@@ -43,15 +44,38 @@ std::string hexColor(const Vec3f& color) {
   return fmt::format("#{:02x}{:02x}{:02x}", channel(color.x()), channel(color.y()), channel(color.z()));
 }
 
-std::string materialsAsJson(const std::vector<ModelMaterial>& materials, Database& database) {
-  Statement object =
-      database.prepare("SELECT json_object('name', ?, 'baseColor', ?, 'firstTriangle', ?, 'triangleCount', ?)");
+/// Those of a scene's materials, then those that meshes have besides.
+std::vector<SharedTexture> texturesOf(const TrajectoryHeader& header) {
+  std::vector<SharedTexture> textures = header.textures;
+  for (const Model& mesh : header.meshes)
+    for (const ModelMaterial& material : mesh.drawn.materials)
+      if (material.texture && std::find(textures.begin(), textures.end(), material.texture) == textures.end())
+        textures.push_back(material.texture);
+  return textures;
+}
+
+void insertTextures(Database& database, const std::vector<SharedTexture>& textures) {
+  Statement insert = database.prepare("INSERT INTO texture VALUES (?, ?, ?)");
+  for (std::size_t id = 0; id < textures.size(); ++id) {
+    insert.bind(1, id);
+    insert.bind(2, textures[id]->name);
+    insert.bind(3, std::as_bytes(std::span(textures[id]->bytes)));
+    insert.run();
+  }
+}
+
+std::string materialsAsJson(const std::vector<ModelMaterial>& materials, const std::vector<SharedTexture>& textures,
+                            Database& database) {
+  Statement object = database.prepare(
+      "SELECT json_object('name', ?, 'baseColor', ?, 'firstTriangle', ?, 'triangleCount', ?, 'texture', ?)");
   std::string json;
   for (const ModelMaterial& material : materials) {
     object.bind(1, material.name);
     object.bind(2, hexColor(material.baseColor));
     object.bind(3, material.firstTriangle);
     object.bind(4, material.triangleCount);
+    const auto texture = std::find(textures.begin(), textures.end(), material.texture);
+    texture == textures.end() ? object.bindNull(5) : object.bind(5, texture - textures.begin());
     object.step();
     if (!json.empty()) json += ',';
     json += object.text(0);
@@ -67,8 +91,8 @@ void insertMeta(Database& database, const std::string& key, const auto& value) {
   insert.run();
 }
 
-void insertMeshes(Database& database, const std::vector<Model>& meshes) {
-  Statement insert = database.prepare("INSERT INTO mesh VALUES (?, ?, ?, ?, ?, ?)");
+void insertMeshes(Database& database, const std::vector<Model>& meshes, const std::vector<SharedTexture>& textures) {
+  Statement insert = database.prepare("INSERT INTO mesh VALUES (?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t id = 0; id < meshes.size(); ++id) {
     const DrawnMesh& drawn = meshes[id].drawn;
     CRADLE_CHECK(drawn.normals.size() == drawn.vertices.size());
@@ -77,7 +101,11 @@ void insertMeshes(Database& database, const std::vector<Model>& meshes) {
     insert.bind(3, std::as_bytes(std::span(drawn.vertices)));
     insert.bind(4, std::as_bytes(std::span(drawn.normals)));
     insert.bind(5, std::as_bytes(std::span(drawn.triangles)));
-    insert.bind(6, materialsAsJson(drawn.materials, database));
+    insert.bind(6, materialsAsJson(drawn.materials, textures, database));
+    if (drawn.textureCoordinates.empty())
+      insert.bindNull(7);
+    else
+      insert.bind(7, std::as_bytes(std::span(drawn.textureCoordinates)));
     insert.run();
   }
 }
@@ -133,7 +161,9 @@ void insertHeader(Database& database, const TrajectoryHeader& header) {
   insertMeta(database, "plan", header.plan);
   insertMeta(database, "accuracy", header.accuracy);
   insertMeta(database, "method", header.method);
-  insertMeshes(database, header.meshes);
+  const std::vector<SharedTexture> textures = texturesOf(header);
+  insertTextures(database, textures);
+  insertMeshes(database, header.meshes, textures);
   insertBodies(database, header);
   insertJoints(database, header);
 }

@@ -56,7 +56,7 @@ class Glb:
         self.arrays, end = [], 0
         for accessor in self.json["accessors"]:
             view = self.json["bufferViews"][accessor["bufferView"]]
-            width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
+            width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}[accessor["type"]]
             test.assertEqual((view["byteOffset"], view["byteLength"]), (end, 4 * width * accessor["count"]))
             test.assertGreater(accessor["count"], 0)
             end += view["byteLength"]
@@ -66,6 +66,12 @@ class Glb:
             if "min" in accessor:
                 test.assertEqual(accessor["min"], [min(column) for column in zip(*self.arrays[-1])])
                 test.assertEqual(accessor["max"], [max(column) for column in zip(*self.arrays[-1])])
+        self.images = []
+        for image in self.json.get("images", []):
+            view = self.json["bufferViews"][image["bufferView"]]
+            test.assertEqual(view["byteOffset"], end)
+            self.images.append(self.binary[end:end + view["byteLength"]])
+            end += (view["byteLength"] + 3) // 4 * 4
         test.assertEqual(end, len(self.binary))
         for mesh in self.json["meshes"]:
             for primitive in mesh["primitives"]:
@@ -75,6 +81,12 @@ class Glb:
                 test.assertLess(max(self.arrays[primitive["indices"]])[0], vertices)
                 test.assertEqual(len(self.arrays[primitive["indices"]]) % 3, 0)
                 test.assertLess(primitive["material"], len(self.json["materials"]))
+                color = self.json["materials"][primitive["material"]]["pbrMetallicRoughness"]
+                test.assertEqual("baseColorTexture" in color, "TEXCOORD_0" in primitive["attributes"])
+                if "baseColorTexture" in color:
+                    test.assertEqual(len(self.arrays[primitive["attributes"]["TEXCOORD_0"]]), vertices)
+                    texture = self.json["textures"][color["baseColorTexture"]["index"]]
+                    test.assertLess(texture["source"], len(self.images))
 
     def check_tree(self, test):
         """Every node is in the scene once."""
@@ -172,6 +184,37 @@ class ExportGlb(unittest.TestCase):
         node = glb.nodes[name]
         self.assertEqual((node["translation"], node["rotation"]),
                          (list(motion["translation"][0][1]), list(motion["rotation"][0][1])))
+
+    def test_textures_go_with_their_meshes(self):
+        """Of the die, three columns and two rows: 1 faces along x, 6 against it. Rows of pictures begin at the top."""
+        shutil.copy(os.path.join(SOURCE, "assets/die.3ds"), self.path("d.3ds"))
+        shutil.copy(os.path.join(SOURCE, "assets/die.png"), self.path("die.png"))
+        shutil.copy(os.path.join(SOURCE, "assets/die.png"), self.path("other.png"))
+        bodies = [{"name": "a", "shape": {"mesh": "d.3ds"}},
+                  {"name": "b", "shape": {"mesh": "d.3ds"}, "position": [1, 0, 0]},
+                  {"name": "c", "shape": {"mesh": "d.3ds"}, "position": [2, 0, 0], "material": "plain"},
+                  {"name": "d", "shape": {"mesh": "d.3ds"}, "position": [3, 0, 0], "material": "own"}]
+        materials = {"plain": {"baseColor": "#ff0000"}, "own": {"texture": "other.png", "baseColor": "#808080"}}
+        self.simulate(bodies, materials=materials)
+        glb = self.export()
+        with open(self.path("die.png"), "rb") as file:
+            self.assertEqual(glb.images, [file.read()] * 2)
+        self.assertEqual([(image["name"], image["mimeType"]) for image in glb.json["images"]],
+                         [("die.png", "image/png"), ("other.png", "image/png")])
+        (primitive,) = glb.shape("a")[0]["primitives"]
+        names = ("POSITION", "NORMAL", "TEXCOORD_0")
+        positions, normals, places = (glb.arrays[primitive["attributes"][name]] for name in names)
+        self.assertEqual(len(positions), 24)
+        for normal, place in zip(normals, places):
+            if abs(normal[0]) > 0.5:
+                column, row = (0, 0) if normal[0] > 0 else (2, 1)
+                self.assertTrue(column / 3 - 1e-6 <= place[0] <= (column + 1) / 3 + 1e-6, (normal, place))
+                self.assertTrue(row / 2 - 1e-6 <= place[1] <= (row + 1) / 2 + 1e-6, (normal, place))
+        self.assertIs(glb.shape("a")[0], glb.shape("b")[0])
+        colors = {name: glb.material(name)["pbrMetallicRoughness"] for name in "acd"}
+        self.assertEqual([colors[name].get("baseColorTexture") for name in "acd"], [{"index": 0}, None, {"index": 1}])
+        for found, expected in zip(colors["d"]["baseColorFactor"], linear("#808080")):
+            self.assertAlmostEqual(found, expected, delta=1e-6)
 
     def test_bodies_are_where_the_table_says(self):
         prism = {"name": "prism", "shape": {"mesh": os.path.join(SOURCE, "assets", "l_prism.3ds"), "scale": 0.2},

@@ -64,7 +64,7 @@ TEST_F(EveryKey, CameraAndLightsAreThoseOfTheFile) {
 }
 
 TEST_F(EveryKey, MaterialsFollowTheUnnamedOne) {
-  ASSERT_EQ(scene_.materials.size(), 3U);
+  ASSERT_EQ(scene_.materials.size(), 4U);
   EXPECT_EQ(scene_.materials[0].name, "");
   const Material& steel = scene_.materials[1];
   EXPECT_EQ(steel.name, "steel");
@@ -78,6 +78,9 @@ TEST_F(EveryKey, MaterialsFollowTheUnnamedOne) {
   EXPECT_EQ(steel.pattern, Pattern::checks);
   EXPECT_EQ(steel.patternColor, Vec3f(1, 0, 0));
   EXPECT_FALSE(scene_.materials[2].baseColor.has_value());
+  EXPECT_EQ(scene_.materials[2].texture, nullptr);
+  ASSERT_NE(scene_.materials[3].texture, nullptr);
+  EXPECT_EQ(scene_.materials[3].texture->name, "models/wood.png");
 }
 
 TEST_F(EveryKey, PairsAreAsNamedOrCombined) {

@@ -26,7 +26,10 @@ std::string markedPlace(const std::string& text);
 /// last triangle, "models/turned.3ds" the cube with a note; anything else is missing.
 LoadedModel cubeModel(const MeshReference& reference);
 
-/// parseScene with cubeModel and the path "scenes/test.json".
+/// A texture for every path below models/.
+SharedTexture anyTexture(const std::string& path);
+
+/// parseScene with cubeModel, anyTexture and the path "scenes/test.json".
 LoadedScene parse(const std::string& text);
 
 /// The error that `text` makes; fails the test if there is none.
