@@ -10,6 +10,8 @@
 namespace cradle {
 namespace {
 
+constexpr double kClearlyDeeper = 1.01;  // than the centre of the bounds: by more than rounding
+
 /// Half the extents (m) of a disc across a unit axis.
 Vec3 discExtents(double radius, const Vec3& axis) {
   return radius * (Vec3::Ones() - axis.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
@@ -30,6 +32,17 @@ Collider enclosed(Collider collider) {
     collider.bounds.extend(Vec3(point + around));
   }
   return collider;
+}
+
+/// How deep (m) a point is inside; < 0 outside.
+double depthOf(const Vec3& point, const Collider& collider) {
+  return -nearestSurfacePoint(collider, point).distance;
+}
+
+Vec3 meanOf(const std::vector<Vec3>& points) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& point : points) sum += point;
+  return sum / static_cast<double>(points.size());
 }
 
 std::vector<Vec3> endsOf(double length, const RigidTransform& bodyFromShape) {
@@ -136,7 +149,11 @@ bool isPinned(const Collider& collider, int other, const Vec3& point, double tol
 }
 
 double innerRadius(const Collider& collider) {
-  if (collider.kind() != ColliderKind::mesh) return -nearestSurfacePoint(collider, collider.bounds.center()).distance;
+  if (collider.kind() != ColliderKind::mesh) {
+    const double atCenter = depthOf(collider.bounds.center(), collider),
+                 atMean = depthOf(meanOf(collider.points), collider);
+    return atMean > kClearlyDeeper * atCenter ? atMean : atCenter;
+  }
   if (!collider.mesh) return collider.boundingRadius;
   if (collider.mesh->isSheet) return std::numeric_limits<double>::infinity();
   double volume = 0, area = 0;

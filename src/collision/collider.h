@@ -96,8 +96,9 @@ struct ContactGeometry {
   std::vector<ColliderPair> unsolvedPairs;  // contact that cannot be computed: must stay out of each other's reach
 };
 
-/// Radius (m) of a sphere inside a collider: around its middle, of a mesh at least its volume by its surface's area;
-/// infinite of a sheet, which nothing is inside of.
+/// Radius (m), > 0, of a sphere inside a collider: around the centre of its bounds, or the mean of its corners where
+/// that is deeper inside, as in wedges and pyramids; of a mesh at least its volume by its surface's area; infinite of a
+/// sheet, which nothing is inside of.
 double innerRadius(const Collider& collider);
 
 /// The least bounding radius (m) of what moves; 1 if nothing does.

@@ -115,6 +115,18 @@ TEST(Collider, TellsTheRadiusOfItsSurface) {
   EXPECT_TRUE(std::isnan(radiusAt(cylinder, Vec3(1, 1, 0))));
 }
 
+// The centre of a pyramid's bounds is outside of it, that of a wedge's in its slope. The mean of the corners is a
+// quarter of the way to each face of the pyramid from its opposite corner, a third in the wedge's section.
+TEST(InnerRadius, IsPositiveWhereTheCentreOfTheBoundsIsOutside) {
+  const ConvexHull pyramid = convexHullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  const ConvexHull wedge = convexHullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 3}, {1, 0, 3}, {0, 1, 3}});
+  EXPECT_NEAR(innerRadius(colliderOf(pyramid, {})), 0.25 / std::sqrt(3), kPlaceRounding);
+  EXPECT_NEAR(innerRadius(colliderOf(wedge, {})), 1 / (3 * std::sqrt(2)), kPlaceRounding);
+  // Turned, they have other bounds, whose centre may be deeper.
+  EXPECT_GT(innerRadius(colliderOf(pyramid, askew())), 0.25 / std::sqrt(3) - kPlaceRounding);
+  EXPECT_GT(innerRadius(colliderOf(wedge, askew())), 1 / (3 * std::sqrt(2)) - kPlaceRounding);
+}
+
 // Around the middle, half of the least width. Of a mesh its volume by its surface: a^3 / (6 a^2) of a cube.
 TEST(InnerRadius, IsThatOfASphereInside) {
   const RigidTransform place = askew();

@@ -324,5 +324,32 @@ TEST(StartOverlaps, OfModelsMayBeTheRoundingOfTheirFiles) {
   EXPECT_THAT(refusalAt(0.1499), HasSubstr("\"cube\" is 150.1 mm deep"));
 }
 
+// The middle of the bounds of a pyramid over three edges of 1 m is outside of it; the mean of its corners is 0.25 /
+// sqrt(3) m from the slope. What may be mended is half of that.
+TEST(StartOverlaps, OfWhatIsNotInTheMiddleOfItsBoundsHaveALimitToo) {
+  const auto refusalAt = [](double height) -> std::string {
+    const Scene scene = parseScene(fmt::format(R"({{"schema": "cradle-scene/1", "name": "t", "duration": 0.01,
+      "bodies": [{}, {{"name": "pyramid", "shape": {{"mesh": "pyramid.obj"}}, "position": [0, {}, 0]}}]}})",
+                                               kGround, height),
+                                   "experiment.json",
+                                   [](const MeshReference&) {
+                                     TriangleMesh pyramid;
+                                     pyramid.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+                                     pyramid.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+                                     return LoadedModel{{"pyramid", pyramid, {}}, {}};
+                                   })
+                            .scene;
+    try {
+      simulate(scene);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusalAt(-0.07), "");
+  EXPECT_THAT(refusalAt(-0.08), HasSubstr("\"pyramid\" is 80 mm deep in the plane \"ground\" at the start; at most "
+                                          "72.17 mm, half of the radius inside"));
+}
+
 }  // namespace
 }  // namespace cradle
