@@ -71,6 +71,7 @@ void apply(const SceneOptions& options, Scene& scene) {
   if (options.accuracy) {
     scene.accuracy = accuracyOf(*options.accuracy);
     scene.namesAccuracy = true;
+    scene.namesVisual = *options.accuracy == kVisualWord;
   }
   if (options.duration) scene.duration = requireIn(kDurations, "--duration", *options.duration);
   if (options.method) {
@@ -142,6 +143,10 @@ void warn(const std::string& warning) {
   show(stderr, "warning: {}\n", printableLine(warning));
 }
 
+bool warnsOfShortfalls(const Scene& scene, bool quiet) {
+  return !(quiet && scene.namesVisual);
+}
+
 Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
   LoadedScene loaded = loadScene(path, options.assetRoot);
   warnOfAll(loaded.warnings);
@@ -168,7 +173,8 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, St
                             [&](const PromiseEnd& end) {
                               if (watch) watch->note(end);
                             },
-                            [&](double time) { progress.showTime(time); }};
+                            [&](double time) { progress.showTime(time); },
+                            warnsOfShortfalls(scene, quiet)};
   const RunCost cost = simulate(scene, world, sink);
   if (watch) watch->finish();
   writer.finish(cost);

@@ -250,7 +250,7 @@ struct Caption {
 /// A picture of words that a film begins with.
 struct TitleCard {
   std::string title, subtitle;
-  double seconds = 3;  // of the film
+  double seconds = 3;                               // of the film
 };
 
 struct Scene {
@@ -260,6 +260,7 @@ struct Scene {
   Vec3 gravity = Vec3(0, -9.81, 0);  // m/s^2
   double accuracy = 1e-6;            // 1e-12..1e-2, bound on the local error
   bool namesAccuracy = false;
+  bool namesVisual = false;      // by the word "visual": a look is all that is asked for
   std::string accuracyWhere;     // the scene file itself if it does not name one
   std::optional<Method> method;  // unset: the program chooses
   Output output;
