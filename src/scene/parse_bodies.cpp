@@ -165,7 +165,7 @@ void requireApart(const Copies& copies, const BodyDraft& draft, const Field& fie
 void writeOutBodies(ObjectReader& reader, BodyDraft& draft, SceneDraft& scene) {
   FaultList& faults = reader.faults();
   const auto copiesField = reader.find("copies");
-  const Copies copies = parseCopies(reader);
+  const Copies copies = draft.copies = parseCopies(reader);
   const double total = static_cast<double>(scene.scene.bodies.size()) + copies.total();
   if (copies.ring && draft.body.prescribed)
     addFault(faults, *copiesField, "a driven body has no copies in a ring; give each its own motion");

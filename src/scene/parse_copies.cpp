@@ -24,9 +24,26 @@ double Copies::total() const {
   return ring ? ring->count : double(count[0]) * double(count[1]) * double(count[2]);
 }
 
+std::array<int, 3> Copies::placeOf(int number) const {
+  return {number / (count[1] * count[2]), number / count[2] % count[1], number % count[2]};
+}
+
+std::optional<int> Copies::numberBeside(int from, const Copies& others, int number) const {
+  if (ring.has_value() != others.ring.has_value()) return std::nullopt;
+  if (ring) return ring->count == others.ring->count ? std::optional((from + number) % ring->count) : std::nullopt;
+  const std::array<int, 3> start = placeOf(from), step = others.placeOf(number);
+  int beside = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int place = start[axis] + step[axis];
+    if (place >= count[axis]) return std::nullopt;
+    beside = beside * count[axis] + place;
+  }
+  return beside;
+}
+
 RigidTransform Copies::move(int number) const {
   if (!ring) {
-    const int iz = number % count[2], iy = number / count[2] % count[1], ix = number / (count[1] * count[2]);
+    const auto [ix, iy, iz] = placeOf(number);
     return {Quat::Identity(), spacing.cwiseProduct(Vec3(ix, iy, iz))};
   }
   const Quat turn = rotationAbout(ring->axis, 2 * std::numbers::pi * number / ring->count);

@@ -25,9 +25,14 @@ struct Copies {
 
   /// How many there are: copy (ix, iy, iz) has the number (ix*ny + iy)*nz + iz.
   double total() const;
+  std::array<int, 3> placeOf(int number) const;  // (ix, iy, iz)
 
   /// What takes copy 0 to copy `number`, in the world.
   RigidTransform move(int number) const;
+
+  /// The number of the copy that is as far from copy `from` as copy `number` of `others` is from their first: as many
+  /// places along each axis, or around the ring of as many. Nothing if there is none.
+  std::optional<int> numberBeside(int from, const Copies& others, int number) const;
 };
 
 /// The key `copies` of a body or a link; one copy if there is none.

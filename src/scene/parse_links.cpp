@@ -60,12 +60,58 @@ void checkBodies(ObjectReader& reader, std::optional<int> bodyA, std::optional<i
   }
 }
 
+const BodyDraft& draftOf(int body, const SceneDraft& scene) {
+  return scene.bodies[scene.draftOfBody[static_cast<std::size_t>(body)]];
+}
+
+/// Whether a body is a copy, and so is named with its number.
+bool isNumbered(int body, const SceneDraft& scene) {
+  return body != kWorld && scene.scene.bodies[static_cast<std::size_t>(body)].name != draftOf(body, scene).body.name;
+}
+
+/// The body that copy `number` of a link ties in place of `body`: of as many copies, the one with that number; of
+/// copies that are tied from another one on, as in a chain, the one that is as far from that. Nothing if it stays.
+std::optional<int> bodyOfCopy(int body, const Copies& copies, int number, const SceneDraft& scene) {
+  if (!isNumbered(body, scene)) return std::nullopt;
+  const BodyDraft& draft = draftOf(body, scene);
+  if (body == draft.firstBody && draft.bodyCount == copies.total()) return body + number;
+  const std::optional<int> beside = draft.copies.numberBeside(body - draft.firstBody, copies, number);
+  return beside ? std::optional(draft.firstBody + *beside) : std::nullopt;
+}
+
+/// Of a link that is copied from a numbered copy on: its copies must not go beyond the last one.
+void checkChain(const Field& name, int body, const Copies& copies, const SceneDraft& scene, FaultList& faults) {
+  if (copies.total() <= 1 || !isNumbered(body, scene)) return;
+  if (bodyOfCopy(body, copies, static_cast<int>(copies.total()) - 1, scene)) return;
+  const BodyDraft& draft = draftOf(body, scene);
+  const int number = body - draft.firstBody;
+  const std::string others = inQuotes(draft.body.name);
+  if (copies.ring || draft.copies.ring) {
+    addFault(faults, name,
+             fmt::format("copies of what ties copy {} of {} go on from there, and are not in a ring of as many; give "
+                         "both the same \"copies\", or tie a body that has none",
+                         number, others));
+    return;
+  }
+  const auto place = draft.copies.placeOf(number);
+  addFault(
+      faults, name,
+      fmt::format("copies of what ties copy {} of {} go on from there, to copies that there are not; allowed is a "
+                  "count of at most [{}, {}, {}]; take fewer, begin at an earlier copy, or tie a body that has none",
+                  number, others, draft.copies.count[0] - place[0], draft.copies.count[1] - place[1],
+                  draft.copies.count[2] - place[2]));
+}
+
 /// The body of a name, or of its first copy if the link is copied with it.
 std::optional<int> findEnd(const Field& name, const Copies& copies, const SceneDraft& scene, FaultList& faults) {
   const auto* text = std::get_if<std::string>(&name.value->content);
   const bool isCopied =
       text != nullptr && copies.areAsked && !scene.bodyIndex.contains(*text) && scene.bodyIndex.contains(*text + "_0");
-  if (!isCopied) return findNamed(name, scene.bodyIndex, "body", faults);
+  if (!isCopied) {
+    const std::optional<int> body = findNamed(name, scene.bodyIndex, "body", faults);
+    if (body) checkChain(name, *body, copies, scene, faults);
+    return body;
+  }
   const int first = scene.bodyIndex.at(*text + "_0");
   const int count = scene.bodies[scene.draftOfBody[static_cast<std::size_t>(first)]].bodyCount;
   if (count == copies.total()) return first;
@@ -276,18 +322,10 @@ class HeldDirections {
   bool isAnyTooMany_ = false;
 };
 
-/// Whether a body is the first of as many copies.
-bool isCopyOfEntry(int body, const Copies& copies, const SceneDraft& scene) {
-  if (body == kWorld) return false;
-  const BodyDraft& draft = scene.bodies[scene.draftOfBody[static_cast<std::size_t>(body)]];
-  const bool isNumbered = scene.scene.bodies[static_cast<std::size_t>(body)].name != draft.body.name;
-  return isNumbered && body == draft.firstBody && draft.bodyCount == copies.total();
-}
-
-/// Takes an end to copy `number`: to that copy of its body, or, on what has no copies, moved along with them.
+/// Takes an end to copy `number`: to a copy of its body, or, on what has no copies, moved along with them.
 void moveEnd(const Copies& copies, int number, const SceneDraft& scene, AnchorDraft& end) {
-  if (isCopyOfEntry(end.anchor.body, copies, scene)) {
-    end.anchor.body += number;
+  if (const std::optional<int> body = bodyOfCopy(end.anchor.body, copies, number, scene)) {
+    end.anchor.body = *body;
     return;
   }
   const RigidTransform move = copies.move(number);
@@ -302,7 +340,7 @@ template <typename Link>
 void turnAxis(const Copies& copies, int number, const SceneDraft& scene, const LinkDraft& first, Link& link) {
   if constexpr (requires { link.axis; }) {
     const int body = first.anchorA.anchor.body;
-    if (body == kWorld || isCopyOfEntry(body, copies, scene)) return;
+    if (body == kWorld || bodyOfCopy(body, copies, number, scene)) return;
     const Quat& worldFromBody = scene.scene.bodies[static_cast<std::size_t>(body)].worldFromBody.rotation;
     link.axis = worldFromBody.conjugate() * (copies.move(number).rotation * (worldFromBody * link.axis));
   }
@@ -320,12 +358,20 @@ LinkDraft copyOf(const LinkDraft& first, const Copies& copies, int number, const
   return draft;
 }
 
-/// A vertex has no place beside it that copies could move to.
+/// A vertex has no place beside it that copies could move to; and copies that go nowhere tie the same twice.
 void checkCopies(const LinkDraft& draft, const Copies& copies, const SceneDraft& scene, FaultList& faults) {
   if (!copies.areAsked) return;
-  for (const AnchorDraft* end : {&draft.anchorA, &draft.anchorB})
-    if (end->vertex && !isCopyOfEntry(end->anchor.body, copies, scene))
+  bool goesAlong = false;
+  for (const AnchorDraft* end : {&draft.anchorA, &draft.anchorB}) {
+    const bool isOnCopies = bodyOfCopy(end->anchor.body, copies, 0, scene).has_value();
+    goesAlong = goesAlong || isOnCopies;
+    if (end->vertex && !isOnCopies)
       addFault(faults, end->field, "a vertex of a body without copies cannot move along with them; give a point");
+  }
+  if (!goesAlong && !copies.ring && copies.spacing.isZero(0) && copies.total() > 1)
+    addFault(faults, draft.field,
+             "all copies would be the same: neither end is on a body with copies, and the spacing is zero; tie copies, "
+             "as \"ball\", or give a spacing");
   if (static_cast<double>(scene.links.size()) + copies.total() > kMaxBodies)
     addFault(faults, draft.field, fmt::format("the scene would have more than {} links", kMaxBodies));
 }

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "scene/parse_copies.h"
 #include "scene/read_fields.h"
 #include "scene/scene.h"
 
@@ -39,6 +40,7 @@ struct BodyDraft {
   std::optional<Mat3> inertiaTensor;  // kg m^2, body's frame
 
   std::optional<double> size;        // m, radius of the bounding sphere; unset until the shape is there
+  Copies copies;                     // where the copies are
   int firstBody = 0, bodyCount = 0;  // its bodies in Scene::bodies
 };
 

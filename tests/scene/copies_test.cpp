@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <set>
 
 #include "math/rotation.h"
 
@@ -80,6 +81,66 @@ TEST(Copies, OfJointsGoRoundOnWhatHasNone) {
     const Vec3 first(2, 0, 0), axis = hub.rotation * Vec3(1, 0, 2).normalized();
     EXPECT_LT((hub * hinge.anchorA.point - turned(first)).norm(), 1e-14) << i;
     EXPECT_LT((hub.rotation * hinge.axis - turned(axis)).norm(), 1e-14) << i;
+  }
+}
+
+// Four balls in a row on three springs: from one to the next.
+TEST(Copies, OfLinksFromOneCopyToTheNextAreAChain) {
+  const Scene scene = copied(R"("bodies": [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [1, 0, 0],
+      "copies": {"count": [4, 1, 1], "spacing": [2, 0, 0]}}],
+    "springs": [{"name": "link", "bodyA": "ball_0", "bodyB": "ball_1", "anchorB": [0, 0.1, 0],
+      "copies": {"count": [3, 1, 1], "spacing": [2, 0, 0]}}])");
+  ASSERT_EQ(scene.springs.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(scene.springs[i].anchorA.body, static_cast<int>(i));
+    EXPECT_EQ(scene.springs[i].anchorB.body, static_cast<int>(i + 1));
+    EXPECT_EQ(scene.springs[i].anchorA.point, Vec3::Zero());
+    EXPECT_EQ(scene.springs[i].anchorB.point, Vec3(0, 0.1, 0));
+    EXPECT_DOUBLE_EQ(scene.springs[i].restLength, std::hypot(2, 0.1));
+  }
+}
+
+// A cloth of 3 x 4 balls: rods along z tie those of one row, along x those of one column; and each spring of the
+// diagonals, from the second column on, goes one on along x and one back along z.
+TEST(Copies, OfLinksGoAlongTheAxesOfTheirBodies) {
+  const Scene scene = copied(R"("bodies": [{"name": "b", "shape": {"sphere": {"radius": 0.1}},
+      "copies": {"count": [3, 1, 4], "spacing": [1, 1, 1]}}],
+    "rods": [{"name": "z", "bodyA": "b_0", "bodyB": "b_1", "anchorB": [0, 0, 0], "copies": {"count": [3, 1, 3]}},
+             {"name": "x", "bodyA": "b_0", "bodyB": "b_4", "anchorB": [0, 0, 0], "copies": {"count": [2, 1, 4]}}],
+    "springs": [{"bodyA": "b_1", "bodyB": "b_4", "copies": {"count": [2, 1, 3]}}])");
+  ASSERT_EQ(scene.rods.size(), 17u);
+  ASSERT_EQ(scene.springs.size(), 6u);
+  const auto way = [&](const auto& link) {
+    return Vec3(placeOf(scene.bodies[static_cast<std::size_t>(link.anchorB.body)]) -
+                placeOf(scene.bodies[static_cast<std::size_t>(link.anchorA.body)]));
+  };
+  std::set<std::pair<int, int>> pairs;
+  for (const Rod& rod : scene.rods) {
+    EXPECT_EQ(way(rod), rod.name[0] == 'z' ? Vec3::UnitZ() : Vec3::UnitX()) << rod.name;
+    pairs.emplace(rod.anchorA.body, rod.anchorB.body);
+  }
+  for (const Spring& spring : scene.springs) {
+    EXPECT_EQ(way(spring), Vec3(1, 0, -1)) << spring.name;
+    pairs.emplace(spring.anchorA.body, spring.anchorB.body);
+  }
+  EXPECT_EQ(pairs.size(), 23u);
+}
+
+// Five beads of a necklace: the last hinge joins the last one with the first. Axes are in A's frame, which is turned
+// already.
+TEST(Copies, OfLinksInARingCloseIt) {
+  const Scene scene = copied(R"("bodies": [{"name": "bead", "shape": {"sphere": {"radius": 0.1}}, "position": [1, 0, 0],
+      "copies": {"ring": {"count": 5}}}],
+    "springs": [{"bodyA": "bead", "bodyB": "bead_1", "copies": {"ring": {"count": 5}}},
+                {"bodyA": "bead_3", "bodyB": "bead_1", "copies": {"ring": {"count": 5}}}])");
+  ASSERT_EQ(scene.springs.size(), 10u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const int number = static_cast<int>(i);
+    EXPECT_EQ(scene.springs[i].anchorA.body, number);
+    EXPECT_EQ(scene.springs[i].anchorB.body, (number + 1) % 5);
+    EXPECT_NEAR(scene.springs[i].restLength, 2 * std::sin(M_PI / 5), 1e-14);
+    EXPECT_EQ(scene.springs[5 + i].anchorA.body, (number + 3) % 5);
+    EXPECT_EQ(scene.springs[5 + i].anchorB.body, (number + 1) % 5);
   }
 }
 
