@@ -154,9 +154,10 @@ void addPlot(CLI::App& app, CommandLine& line) {
   plot->add_option("runs", line.scenes, "trajectories, or scene files, which are simulated")->required();
   addOutput(plot, line, "chart to write (.svg or .png)");
   plot->add_option("--quantity", line.plot.quantities,
-                   "what is shown, a panel each, with commas: energy, energyError, height:BODY, angle:BODY or "
-                   "angle:JOINT (of a pendulum), phase:BODY or phase:JOINT (its velocity over it), error, error:BODY "
-                   "(against --reference)")
+                   "what is shown, a panel each, with commas, or several times: energy, energyError, height:BODY, "
+                   "angle:BODY or angle:JOINT (of a pendulum), phase:BODY or phase:JOINT (its velocity over it), "
+                   "error, error:BODY (against --reference)")
+      ->allow_extra_args(false)
       ->capture_default_str();
   plot->add_option("--reference", line.plot.reference, "trajectory or scene that errors are measured against");
   plot->add_option("--methods", line.methods,
@@ -332,7 +333,7 @@ int run(int argc, char** argv) {
   CLI::App app("Cradle: rigid-body physics from a scene file, and pictures of it.", "cradle");
   CommandLine line;
   app.set_version_flag("--version", "cradle " CRADLE_VERSION);
-  app.add_flag("-q,--quiet", line.quiet, "no progress on stderr");
+  app.add_flag("-q,--quiet", line.quiet, "no progress on stderr, and at the accuracy \"visual\" no warnings about accuracy");
   app.require_subcommand(1);
   app.fallthrough();
   app.footer(

@@ -62,8 +62,44 @@ std::vector<std::string> runNames(const std::vector<RunOrigin>& origins, std::si
   return names;
 }
 
+/// With the time up to which a run went that failed.
 std::string shownName(const std::string& name, const TrajectoryReader& run) {
   return run.hasFailed() ? fmt::format("{} (unstable after {:.3g} s)", name, run.frameTimes().back()) : name;
+}
+
+/// Of all scenes; of one run with its end, if it failed, as a chart of one run may have no legend.
+std::string titleOf(const std::vector<PlottedRun>& runs) {
+  constexpr std::size_t kMaxNames = 3;
+  std::vector<std::string> names;
+  for (const PlottedRun& run : runs)
+    if (std::find(names.begin(), names.end(), run.scene.name) == names.end()) names.push_back(run.scene.name);
+  if (runs.size() == 1) return shownName(names[0], runs[0].frames);
+  const std::size_t more = names.size() - std::min(names.size(), kMaxNames);
+  names.resize(names.size() - more);
+  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+/// A step is that of a method.
+void requireStepped(const PlotOptions& options) {
+  const bool isTaken = std::any_of(options.methods.begin(), options.methods.end(),
+                                   [](const std::string& method) { return method != kPlan; });
+  if (options.scene.timeStep && !isTaken)
+    throw Error(ErrorKind::usage, "--time-step",
+                "found without --methods that take it; name them, as --methods explicitEuler,rk4");
+}
+
+std::vector<RunQuantity> quantitiesOf(const PlotOptions& options, const std::deque<TrajectorySource>& sources) {
+  std::vector<std::string> names;
+  for (const TrajectorySource& source : sources) {
+    const std::vector<std::string> more = namesWithCommas(source.scene());
+    names.insert(names.end(), more.begin(), more.end());
+  }
+  std::vector<RunQuantity> quantities;
+  for (const std::string& text : options.quantities) {
+    const std::vector<RunQuantity> more = parseQuantities(text, names);
+    quantities.insert(quantities.end(), more.begin(), more.end());
+  }
+  return quantities;
 }
 
 std::vector<RunOrigin> originsOf(const std::vector<std::string>& inputs, const PlotOptions& options) {
@@ -94,8 +130,7 @@ void requireReference(const std::vector<RunQuantity>& quantities, const PlotOpti
 
 void plotRuns(const std::vector<std::string>& runs, const std::string& output, const PlotOptions& options, bool quiet) {
   const ChartFormat format = formatOf(output);
-  const std::vector<RunQuantity> quantities = parseQuantities(options.quantities);
-  requireReference(quantities, options);
+  requireStepped(options);
   requireWritableFile(output);
   for (const std::string& run : runs) requireOtherFile(output, run);
   if (!options.reference.empty()) requireOtherFile(output, options.reference);
@@ -106,6 +141,8 @@ void plotRuns(const std::vector<std::string>& runs, const std::string& output, c
   for (const RunOrigin& origin : origins) sources.emplace_back(origin.input, quiet, optionsOf(origin, options));
   if (!options.reference.empty())
     sources.emplace_back(options.reference, quiet, optionsOf({options.reference, kPlan}, options));
+  const std::vector<RunQuantity> quantities = quantitiesOf(options, sources);
+  requireReference(quantities, options);
   const std::vector<std::string> names = runNames(origins, options.methods.size());
   for (const RunQuantity& quantity : quantities)
     for (std::size_t i = 0; i < sources.size(); ++i)
@@ -125,7 +162,7 @@ void plotRuns(const std::vector<std::string>& runs, const std::string& output, c
   std::vector<RunPanel> panels;
   for (const RunQuantity& quantity : quantities)
     panels.push_back(panelOf(quantity, shown, reference ? &*reference : nullptr));
-  drawWithGnuplot(output, format, runChartCommands(shown[0].scene.name, panels, format));
+  drawWithGnuplot(output, format, runChartCommands(titleOf(shown), panels, format));
 }
 
 }  // namespace cradle

@@ -8,10 +8,10 @@
 namespace cradle {
 
 struct PlotOptions {
-  std::string quantities = "energy";  // as parseQuantities() reads them
-  std::string reference;              // scene or trajectory; empty: none
-  std::vector<std::string> methods;   // that scenes are simulated with; empty: "plan"
-  SceneOptions scene;                 // of scenes; its time step is that of methods that take one
+  std::vector<std::string> quantities = {"energy"};  // each as parseQuantities() reads it
+  std::string reference;                             // scene or trajectory; empty: none
+  std::vector<std::string> methods;                  // that scenes are simulated with; empty: "plan"
+  SceneOptions scene;                                // of scenes; its time step is that of methods that take one
 };
 
 /// `cradle plot RUN... -o FILE.svg|FILE.png`: quantities of trajectories, and of scenes that are simulated, over time

@@ -9,6 +9,7 @@
 #include "core/part_lock.h"
 #include "core/printable.h"
 #include "image/child_process.h"
+#include "image/font.h"
 
 namespace cradle {
 namespace {
@@ -45,6 +46,17 @@ std::string quotedForGnuplot(const std::string& text) {
   std::string result = "'";
   for (const char c : printableLine(text)) result += c == '\'' ? "''" : std::string(1, c);
   return result + "'";
+}
+
+std::string fittedForGnuplot(const std::string& text, double fontSize, double width, double height) {
+  constexpr double kLeastSize = 6, kSmaller = 0.94, kLine = 1.3;  // the line in em
+  double size = fontSize;
+  const auto lines = [&] { return wrappedText(printableLine(text), {kChartEm * size, 0, 0}, width); };
+  const auto isTooHigh = [&] { return static_cast<double>(lines().size()) * kLine * kChartEm * size > height; };
+  while (size > kLeastSize && lines().size() > 1 && isTooHigh()) size *= kSmaller;
+  std::string quoted;
+  for (const std::string& line : lines()) quoted += (quoted.empty() ? "" : ".\"\\n\".") + quotedForGnuplot(line);
+  return fmt::format("{} font ',{:.3g}'", quoted.empty() ? "''" : quoted, size);
 }
 
 std::string drawingCommands(const std::string& drawing, ChartFormat format, int height) {

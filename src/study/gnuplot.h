@@ -17,6 +17,12 @@ bool canDrawCharts();
 /// A text for gnuplot, in quotes and without commands.
 std::string quotedForGnuplot(const std::string& text);
 
+/// Pixels of a letter's em for each unit of a font's size, in pictures of drawingCommands().
+constexpr double kChartEm = 4.0 / 3;
+
+/// The same with its font, wrapped and made smaller so that it is at most as wide and high as that (pixels).
+std::string fittedForGnuplot(const std::string& text, double fontSize, double width, double height);
+
 enum class ChartFormat { svg, png };
 
 /// Commands that make gnuplot print a `drawing` as a picture of that format, 1600 pixels wide; it may use markerScale,

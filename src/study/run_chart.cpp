@@ -5,12 +5,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/printable.h"
+#include "image/font.h"
+
 namespace cradle {
 namespace {
 
 constexpr int kPanelHeight = 560, kFrameHeight = 130;  // pixels
-constexpr double kMargin = 0.05;                       // of the values' range
-constexpr double kShownOfFailed = 0.9;                 // of a failed run, by time: growing without bound comes after
+// Pixels that texts may take, beside axes and on the whole width.
+constexpr double kBesidePanel = 460, kBesideAxis = 80, kBelowPanel = 1300, kBelowAxis = 30, kWholeWidth = 1500,
+                 kTitleHeight = 56;
+constexpr double kFontSize = 15, kTitleSize = 22, kMinLegendSize = 6;
+constexpr int kRunLegendRow = 26, kUsualLegendRows = 2;  // pixels
+constexpr double kLegendSample = 70;                  // pixels, beside a name
+constexpr double kMargin = 0.05;                      // of the values' range
+constexpr double kShownOfFailed = 0.9;                // of a failed run, by time: growing without bound comes after
 
 struct ValueRange {
   double low = INFINITY, high = -INFINITY;
@@ -44,8 +53,9 @@ std::string abscissaCommands(const RunPanel& panel) {
 }
 
 std::string panelAxes(const RunPanel& panel) {
-  std::string text = fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\n", quotedForGnuplot(panel.axes.x),
-                                 quotedForGnuplot(panel.axes.y));
+  std::string text = fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\n",
+                                 fittedForGnuplot(panel.axes.x, kFontSize, kBelowPanel, kBelowAxis),
+                                 fittedForGnuplot(panel.axes.y, kFontSize, kBesidePanel, kBesideAxis));
   const ValueRange range = valueRange(panel);
   text += abscissaCommands(panel);
   if (panel.axes.isLogarithmic)
@@ -65,6 +75,23 @@ std::vector<std::string> legendNames(const std::vector<RunPanel>& panels) {
     for (const QuantityCurve& curve : panel.curves)
       if (std::find(names.begin(), names.end(), curve.name) == names.end()) names.push_back(curve.name);
   return names;
+}
+
+/// How the names of a legend are laid out: in columns as wide as the widest.
+struct Legend {
+  double fontSize = kFontSize;
+  int rows = kUsualLegendRows;
+};
+
+Legend legendOf(const std::vector<std::string>& names) {
+  double widest = 0;  // of an em
+  for (const std::string& name : names) widest = std::max(widest, textWidth(printableLine(name), {1, 0, 0}));
+  const double room = kWholeWidth - kLegendSample;
+  Legend legend;
+  legend.fontSize = std::clamp(room / (widest * kChartEm), kMinLegendSize, kFontSize);
+  const double columns = std::max(1.0, std::floor(kWholeWidth / (widest * kChartEm * legend.fontSize + kLegendSample)));
+  legend.rows = std::max(kUsualLegendRows, static_cast<int>(std::ceil(static_cast<double>(names.size()) / columns)));
+  return legend;
 }
 
 bool endsAtCross(const RunPanel& panel, std::size_t curve) {
@@ -131,22 +158,25 @@ RunPanel panelOf(const RunQuantity& quantity, const std::vector<PlottedRun>& run
 
 std::string runChartCommands(const std::string& title, const std::vector<RunPanel>& panels, ChartFormat format) {
   const std::vector<std::string> names = legendNames(panels);
-  const int height = kFrameHeight + kPanelHeight * static_cast<int>(panels.size());
-  const double top = 1 - 60.0 / height, panelHeight = (top - 70.0 / height) / static_cast<double>(panels.size());
+  const Legend legend = legendOf(names);
+  const int below = 70 + kRunLegendRow * (legend.rows - kUsualLegendRows);
+  const int height = kFrameHeight - 70 + below + kPanelHeight * static_cast<int>(panels.size());
+  const double top = 1 - 60.0 / height,
+               panelHeight = (top - static_cast<double>(below) / height) / static_cast<double>(panels.size());
   std::string text = fmt::format(
       "set multiplot\nset border linecolor rgb '#404040'\nset tics nomirror\n"
       "set grid xtics ytics linecolor rgb '#d0d0d0' linewidth 1 dashtype 1\n"
-      "set label 1 {} at screen 0.5, {} center font ',22' noenhanced\nset lmargin screen 0.125\nset rmargin screen "
+      "set label 1 {} at screen 0.5, {} center noenhanced\nset lmargin screen 0.125\nset rmargin screen "
       "0.97\n",
-      quotedForGnuplot(title), 1 - 35.0 / height);
+      fittedForGnuplot(title, kTitleSize, kWholeWidth, kTitleHeight), 1 - 35.0 / height);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const bool isLast = i + 1 == panels.size();
     const double above = top - static_cast<double>(i) * panelHeight;
     text += fmt::format("set tmargin screen {}\nset bmargin screen {}\n", above, above - panelHeight + 75.0 / height);
     text += isLast && names.size() > 1 ? fmt::format(
                                              "set key at screen 0.53, {} center bottom horizontal Left "
-                                             "reverse maxrows 2 samplen 2 width 1\n",
-                                             8.0 / height)
+                                             "reverse maxrows {} samplen 2 width 1 font ',{:.3g}'\n",
+                                             8.0 / height, legend.rows, legend.fontSize)
                                        : "unset key\n";
     text += panelAxes(panels[i]) + panelCommand(i, panels[i], names, isLast && names.size() > 1) + "unset label 1\n";
   }

@@ -19,7 +19,7 @@ constexpr double kSameFrameTime = 1e-9;  // of frames, of 1 s and the time
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kAllowed =
     "energy, energyError, height:BODY, angle:BODY or angle:JOINT, phase:BODY or phase:JOINT, error, error:BODY, with "
-    "commas between them";
+    "commas between them, or --quantity again";
 
 struct NamedQuantity {
   const char* word;
@@ -41,6 +41,18 @@ RunQuantity parseQuantity(const std::string& text) {
       return {known.kind, name};
   throw Error(ErrorKind::usage, "--quantity",
               fmt::format("found \"{}\"; allowed are {}", printableLine(text), kAllowed));
+}
+
+/// Where the quantity ends that begins at `begin`: after the longest of `names` that is its own, or at the next comma.
+std::size_t endOfQuantity(const std::string& text, std::size_t begin, const std::vector<std::string>& names) {
+  const std::size_t comma = std::min(text.find(',', begin), text.size()), colon = text.find(':', begin);
+  std::size_t end = comma;
+  for (const std::string& name : names) {
+    const std::size_t after = colon + 1 + name.size();
+    const bool isNamed = colon < comma && text.compare(colon + 1, name.size(), name) == 0;
+    if (isNamed && (after == text.size() || text[after] == ',')) end = std::max(end, after);
+  }
+  return end;
 }
 
 /// Index into Frame::states by body; -1 of bodies that have none.
@@ -254,14 +266,24 @@ QuantityCurve errorCurve(const RunQuantity& quantity, const PlottedRun& run, con
 
 }  // namespace
 
-std::vector<RunQuantity> parseQuantities(const std::string& text) {
+std::vector<RunQuantity> parseQuantities(const std::string& text, const std::vector<std::string>& names) {
   std::vector<RunQuantity> quantities;
   for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::size_t end = endOfQuantity(text, begin, names);
     quantities.push_back(parseQuantity(text.substr(begin, end - begin)));
     begin = end + 1;
   }
   return quantities;
+}
+
+std::vector<std::string> namesWithCommas(const Scene& scene) {
+  std::vector<std::string> names;
+  const auto add = [&names](const auto& named) {
+    for (const auto& one : named)
+      if (one.name.find(',') != std::string::npos) names.push_back(one.name);
+  };
+  add(scene.bodies), add(scene.hinges), add(scene.sliders);
+  return names;
 }
 
 void requireQuantity(const RunQuantity& quantity, const RunScene& run) {

@@ -16,9 +16,13 @@ struct RunQuantity {
   std::string name;  // of the body (height, angle, phase, error) or joint (angle, phase); empty: error of all bodies
 };
 
-/// Reads "energy,energyError,height:BODY,angle:NAME,phase:NAME,error,error:BODY", at least one of them, in any order.
-/// Throws Error(usage) for anything else.
-std::vector<RunQuantity> parseQuantities(const std::string& text);
+/// Reads "energy,energyError,height:BODY,angle:NAME,phase:NAME,error,error:BODY", at least one of them, in any order. A
+/// comma that is in one of `names`, of bodies and joints, is a part of that name. Throws Error(usage) for anything
+/// else.
+std::vector<RunQuantity> parseQuantities(const std::string& text, const std::vector<std::string>& names = {});
+
+/// The names of a scene's bodies and joints that have commas.
+std::vector<std::string> namesWithCommas(const Scene& scene);
 
 /// A scene whose trajectory is asked for quantities. It must outlive this.
 struct RunScene {

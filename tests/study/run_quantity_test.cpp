@@ -129,6 +129,58 @@ TEST(RunQuantity, WhatTheSceneHasNotIsRefused) {
   EXPECT_EQ(parseQuantities("energy,error,height:a,phase:a b").size(), 4u);
 }
 
+TEST(RunQuantity, NamesMayHaveCommas) {
+  const Made made(R"("bodies": [)" + ball("a, b", "[0, 5, 0]", "[0, 0, 0]") + ", " + ball("a", "[0, 6, 0]", "[0, 0, 0]") +
+                      ", " + ball("b,energy", "[0, 7, 0]", "[0, 0, 0]") + "]",
+                  R"("duration": 0.1, )");
+  const std::vector<std::string> names = namesWithCommas(made.scene);
+  EXPECT_THAT(names, ::testing::ElementsAre("a, b", "b,energy"));
+  const auto read = [&](const std::string& text) {
+    std::vector<std::string> found;
+    for (const RunQuantity& quantity : parseQuantities(text, names)) {
+      requireQuantity(quantity, made.run());
+      found.push_back(quantity.name);
+    }
+    return found;
+  };
+  EXPECT_THAT(read("height:a, b"), ::testing::ElementsAre("a, b"));
+  EXPECT_THAT(read("energy,height:a, b,height:a,energyError"), ::testing::ElementsAre("", "a, b", "a", ""));
+  EXPECT_THAT(read("height:a,energy"), ::testing::ElementsAre("a", ""));
+  EXPECT_THAT(read("height:b,energy,energy"), ::testing::ElementsAre("b,energy", ""));
+  EXPECT_THROW(parseQuantities("height:a, b"), Error);
+  EXPECT_THROW(parseQuantities("height:a, bc", names), Error);
+}
+
+TEST(RunChart, LongTextsAreWrappedAndSmaller) {
+  EXPECT_EQ(fittedForGnuplot("it's", 15, 460, 80), "'it''s' font ',15'");
+  std::string name;
+  while (name.size() < 240) name += "Pendulum `date` \\n $x ";
+  const std::string fitted = fittedForGnuplot(name, 15, 460, 80);
+  EXPECT_THAT(fitted, HasSubstr("'.\"\\n\".'"));
+  EXPECT_THAT(fitted, Not(HasSubstr("font ',15'")));
+  std::string words;  // all that is in single quotes
+  bool isInside = false;
+  for (const char c : fitted.substr(0, fitted.rfind(" font")))
+    if (c == '\'')
+      isInside = !isInside;
+    else if (isInside && c != ' ')
+      words += c;
+  std::erase(name, ' ');
+  EXPECT_EQ(words, name);
+}
+
+// Names of 60 letters: two stand beside each other on 1600 pixels, and five take three rows.
+TEST(RunChart, LegendHasRowsForItsNames) {
+  RunPanel panel{{"time (s)", "energy (J)"}, {}, {}};
+  for (char letter = 'a'; letter < 'f'; ++letter)
+    panel.curves.push_back({std::string(60, letter), {0, 1}, {1, 2}}), panel.hasFailed.push_back(0);
+  EXPECT_THAT(runChartCommands("t", {panel}, ChartFormat::svg), HasSubstr("maxrows 3"));
+  for (QuantityCurve& curve : panel.curves) curve.name.resize(5);
+  EXPECT_THAT(runChartCommands("t", {panel}, ChartFormat::svg), HasSubstr("maxrows 2"));
+  panel.curves[0].name = std::string(250, 'w');
+  EXPECT_THAT(runChartCommands("t", {panel}, ChartFormat::svg), HasSubstr("maxrows 5"));
+}
+
 TEST(RunChart, CurvesThatFailEndAtACross) {
   RunPanel panel{{"time (s)", "energy (J)"}, {{"good", {0, 1, 2}, {1, 1, 1}}, {"bad", {0, 1}, {1, 1e30}}}, {0, 1}};
   const std::string commands = runChartCommands("it's", {panel}, ChartFormat::svg);
