@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "image/font.h"
+#include "overlay/time_panel.h"
 
 namespace cradle {
 namespace {
@@ -22,10 +23,8 @@ constexpr double kSmoothTurn = 0.7;  // change of velocity between frames, of th
 // Of arrowUnit().
 constexpr double kLongestVelocity = 0.22, kLongestImpulse = 0.14;
 // Of the picture's height.
-constexpr double kTrailWidth = 0.008, kArrowWidth = 0.0075, kDotRadius = 0.006, kLabelFromEdge = 0.03,
-                 kLabelPadding = 0.014;
-constexpr double kNameText = 0.036, kTimeText = 0.033, kImpulseText = 0.028;
-constexpr double kWidestName = 0.45;         // of the picture's width, so that a plot fits beside it
+constexpr double kTrailWidth = 0.008, kArrowWidth = 0.0075, kDotRadius = 0.006, kImpulseText = 0.028;
+constexpr double kPanelGap = 0.015;          // between time and plot, of the picture's height
 constexpr double kMinMark = 0.35;            // of an impact, in terms of that of the film's greatest
 constexpr std::size_t kMaxImpulseTexts = 4;  // the greatest ones of a picture: more would hide each other
 constexpr double kShortestText = 0.05;       // of the film's greatest impulse: below, a number says nothing
@@ -51,9 +50,12 @@ double arrowUnit(const View& view) {
   return unit;
 }
 
-/// Digits after the point that tell neighbouring frames apart.
-int timeDigits(const Scene& scene) {
-  return static_cast<int>(std::clamp(std::ceil(-std::log10(frameInterval(scene))), 0.0, 9.0));
+/// Where a plot in the upper right corner begins (pixels): below a panel with that lower right end if it would lie on
+/// it.
+double upperEdgeBeside(const PicturePoint& end, int width, int height) {
+  const double gap = kPanelGap * height;
+  const bool isBeside = plotPanelAt(PlotCorner::upperRight, 0, width, height).first.x >= end.x + gap;
+  return isBeside ? 0 : end.y + gap;
 }
 
 struct TimedPoint {
@@ -100,6 +102,8 @@ void FilmOverlay::readFilm(const FilmRecord& film) {
     plottedBody_ = plottedBody(choice_, scene_);
     plot_ = {"height of " + choice_.plottedBody + " (m)", {}, {{"", {}, kFirstCurve}}};
   }
+  if (choice_.time)
+    plot_.upperEdge = upperEdgeBeside(timePanelEnd(scene_, film.width, film.height), film.width, film.height);
   std::array<long, kCorners.size()> hidden{};
   for (long number = 0; number < film.frameCount; ++number) {
     const Frame frame = film.frameAt(number);
@@ -125,7 +129,7 @@ void FilmOverlay::countHidden(const Frame& frame, const Lens& lens, std::array<l
   for (const BodyState& state : frame.states) {
     const auto place = lens.see(state.position);
     for (std::size_t i = 0; i < kCorners.size() && place; ++i) {
-      const auto [low, high] = plotPanelAt(kCorners[i], lens.width, lens.height);
+      const auto [low, high] = plotPanelAt(kCorners[i], plot_.upperEdge, lens.width, lens.height);
       hidden[i] += place->x > low.x && place->x < high.x && place->y > low.y && place->y < high.y;
     }
   }
@@ -157,7 +161,7 @@ void FilmOverlay::draw(const Frame& frame, Image& image) {
   if (choice_.velocities) drawVelocities(frame, lens, canvas);
   if (choice_.contacts) drawContacts(frame, lens, canvas);
   if (choice_.plot) drawPlot(canvas, plot_, static_cast<std::size_t>(frame.number));
-  if (choice_.time) drawTime(frame, canvas);
+  if (choice_.time) drawTimePanel(canvas, scene_, frame.time);
 }
 
 /// Brings the frames that end at `now` into trailFrames_, reading those that are not there.
@@ -254,26 +258,6 @@ void FilmOverlay::drawImpulseTexts(std::vector<ImpulseText> texts, Canvas& canva
                      {kLabelPanel.color, kLabelPanel.opacity * label.opacity});
     drawText(canvas, text, size, start, {kLabelWords.color, label.opacity});
   }
-}
-
-void FilmOverlay::drawTime(const Frame& frame, Canvas& canvas) const {
-  const double unit = canvas.height();
-  const TextSize nameSize = crispTextSize(kNameText * unit), timeSize = crispTextSize(kTimeText * unit);
-  const std::string name = fittedText(scene_.name, nameSize, kWidestName * canvas.width());
-  const double speed = scene_.output.playbackSpeed;
-  const std::string time = fmt::format("t = {:.{}f} s{}", frame.time, timeDigits(scene_),
-                                       speed == 1 ? "" : fmt::format("   speed {:g}", speed));
-  // As wide as the longest time, so that the panel does not tremble.
-  const std::string last = fmt::format("t = {:.{}f} s{}", scene_.duration, timeDigits(scene_),
-                                       speed == 1 ? "" : fmt::format("   speed {:g}", speed));
-  const double padding = kLabelPadding * unit, edge = std::round(kLabelFromEdge * unit);
-  const double breadth = std::max(textWidth(name, nameSize), textWidth(last, timeSize));
-  const double nameLine = edge + std::round(padding + nameSize.ascent);
-  const double timeLine = nameLine + std::round(0.75 * nameSize.em + timeSize.ascent / 2 + 0.2 * timeSize.em);
-  canvas.rectangle({edge, edge}, {edge + std::round(breadth + 2 * padding), std::round(timeLine + padding)}, padding,
-                   kLabelPanel);
-  drawText(canvas, name, nameSize, {edge + padding, nameLine}, kLabelWords);
-  drawText(canvas, time, timeSize, {edge + padding, timeLine}, kLabelWords);
 }
 
 }  // namespace cradle

@@ -28,7 +28,7 @@ class FilmOverlay {
  public:
   /// Reads all frames once if the choice needs it (velocities, plot), and later those that it has not drawn (trails, or
   /// a camera that follows): none at all in a film drawn in order. A plot goes to the corner where it hides the
-  /// centres of mass of dynamic bodies the least often.
+  /// centres of mass of dynamic bodies the least often; it lies below the time where there is no room beside that.
   FilmOverlay(const FilmRecord& film, const OverlayChoice& choice);
 
   /// `image` is the picture of `frame`. O(bodies x length of their trails).
@@ -48,7 +48,6 @@ class FilmOverlay {
   void drawVelocities(const Frame& frame, const Lens& lens, Canvas& canvas) const;
   void drawContacts(const Frame& frame, const Lens& lens, Canvas& canvas) const;
   void drawImpulseTexts(std::vector<ImpulseText> texts, Canvas& canvas) const;
-  void drawTime(const Frame& frame, Canvas& canvas) const;
 
   const Scene& scene_;
   const OverlayChoice choice_;

@@ -71,7 +71,8 @@ Layout layOut(const PlotContent& content, int width, int height) {
   const double unit = height, padding = kPadding * unit;
   layout.text = crispTextSize(kText * unit);
   const double line = kLineHeight * layout.text.em;
-  std::tie(layout.panelTopLeft, layout.panelBottomRight) = plotPanelAt(content.corner, width, height);
+  std::tie(layout.panelTopLeft, layout.panelBottomRight) =
+      plotPanelAt(content.corner, content.upperEdge, width, height);
   PlotArea& area = layout.area;
   area.right = std::round(layout.panelBottomRight.x - 2 * padding);
   area.top = std::round(layout.panelTopLeft.y + padding + line);
@@ -129,11 +130,11 @@ void drawHead(Canvas& canvas, const PlotContent& content, const Layout& layout) 
 
 }  // namespace
 
-std::pair<PicturePoint, PicturePoint> plotPanelAt(PlotCorner corner, int width, int height) {
+std::pair<PicturePoint, PicturePoint> plotPanelAt(PlotCorner corner, double upperEdge, int width, int height) {
   const double edge = std::round(kFromEdge * height), tall = std::round(kHeight * height);
   const double wide = std::round(std::min(kWidth * height, width - 2 * edge));
   const double left = corner == PlotCorner::lowerLeft ? edge : width - edge - wide;
-  const double top = corner == PlotCorner::upperRight ? edge : height - edge - tall;
+  const double top = corner == PlotCorner::upperRight ? std::max(edge, std::round(upperEdge)) : height - edge - tall;
   return {{left, top}, {left + wide, top + tall}};
 }
 

@@ -23,6 +23,7 @@ struct PlotContent {
   std::vector<double> times;  // s, ascending, at least one
   std::vector<PlotCurve> curves;
   PlotCorner corner = PlotCorner::upperRight;
+  double upperEdge = 0;  // pixels: no part of the plot lies above
 };
 
 /// The rectangle of a plot's curves in a picture, and what its sides stand for.
@@ -33,8 +34,8 @@ struct PlotArea {
   PicturePoint at(double time, double value) const;
 };
 
-/// The upper left and the lower right end of a plot and what belongs to it (pixels).
-std::pair<PicturePoint, PicturePoint> plotPanelAt(PlotCorner corner, int width, int height);
+/// The upper left and the lower right end of a plot and what belongs to it (pixels), below `upperEdge`.
+std::pair<PicturePoint, PicturePoint> plotPanelAt(PlotCorner corner, double upperEdge, int width, int height);
 
 /// Where the curves of `content` lie in a picture: the same in all frames of a film.
 PlotArea plotAreaOf(const PlotContent& content, int width, int height);

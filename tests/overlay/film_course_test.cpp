@@ -86,9 +86,36 @@ TEST_F(Film, PlotLiesWhereTheCameraOfTheSceneSeesFewestBodies) {
   // From 6 m, the balls stay clear of the upper right corner; from 3.2 m, they do not.
   scene_.camera = view_.camera;
   scene_.camera->position.z() = 3.2;
-  const auto [low, high] = plotPanelAt(PlotCorner::upperRight, kWidth, kHeight);
+  const auto [low, high] = plotPanelAt(PlotCorner::upperRight, 0, kWidth, kHeight);
   const Image image = draw({false, false, false, false, PlotKind::energy, ""}, 60);
   EXPECT_EQ(image.at(static_cast<int>((low.x + high.x) / 2), static_cast<int>(high.y) - 2)[2], 0);
+}
+
+// In a picture as narrow as 360x640 the plot has the whole width, and is below the time in the upper left corner.
+TEST_F(Film, PlotLiesBelowTheTimeWhereThereIsNoRoomBesideIt) {
+  scene_.captions = {{"Words at the bottom, which keep the plot at the top", 0, 2, kWorld}};
+  OverlayChoice timeAlone, both;
+  timeAlone.time = both.time = true;
+  both.plot = PlotKind::energy;
+  const auto drawn = [&](const OverlayChoice& choice, int width, int height) {
+    Image image(width, height);
+    FilmOverlay({scene_, view_, width, height, frameAt, kFrames, {}}, choice).draw(frameAt(60), image);
+    return image;
+  };
+  for (const auto& [width, height] : {std::pair(360, 640), std::pair(480, 480), std::pair(640, 360)}) {
+    const Image time = drawn(timeAlone, width, height), image = drawn(both, width, height);
+    long marked = 0, changed = 0, plot = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const bool isTime = time.at(x, y)[2] > 0;
+        marked += isTime;
+        changed += isTime && time.at(x, y)[2] != image.at(x, y)[2];
+        plot += !isTime && image.at(x, y)[2] > 0;
+      }
+    EXPECT_GT(marked, 500);
+    EXPECT_EQ(changed, 0) << width;
+    EXPECT_GT(plot, 0.25 * height * std::min(0.62 * height, 0.9 * width)) << width;  // all of it
+  }
 }
 
 TEST_F(Film, PlotsHaveWhatTheyAreNamedFor) {

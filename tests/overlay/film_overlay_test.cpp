@@ -92,7 +92,7 @@ TEST_F(Film, PlotLiesWhereItHidesTheFewestBodies) {
   OverlayChoice choice;
   choice.plot = PlotKind::energy;
   const auto isAt = [&](PlotCorner corner) {
-    const auto [low, high] = plotPanelAt(corner, kWidth, kHeight);
+    const auto [low, high] = plotPanelAt(corner, 0, kWidth, kHeight);
     const Image image = draw(choice, 60);
     return image.at(static_cast<int>((low.x + high.x) / 2), static_cast<int>(high.y) - 2)[2] > 0;
   };

@@ -63,7 +63,7 @@ TEST(PlotPanel, CurvesPassThroughTheirPixelsUpToNow) {
 TEST(PlotPanel, HasATitleNamesAndRules) {
   const PlotArea area = plotAreaOf(waveAndLine(), kWidth, kHeight);
   const Image image = drawn(waveAndLine(), 150);
-  const auto [low, high] = plotPanelAt(PlotCorner::upperRight, kWidth, kHeight);
+  const auto [low, high] = plotPanelAt(PlotCorner::upperRight, 0, kWidth, kHeight);
   bool hasTitle = false, hasName = false;
   for (double y = low.y; y < area.top - 1; ++y)
     for (double x = low.x; x < high.x; ++x) {
@@ -182,9 +182,9 @@ TEST(PlotPanel, CornersAreThoseOfThePicture) {
   const auto isAt = [](const Ends& ends, double left, double top) {
     return ends.first.x == left && ends.first.y == top && ends.second.x == left + 446 && ends.second.y == top + 216;
   };
-  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::upperRight, 1280, 720), 1280 - 22 - 446, 22));
-  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::lowerRight, 1280, 720), 1280 - 22 - 446, 720 - 22 - 216));
-  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::lowerLeft, 1280, 720), 22, 720 - 22 - 216));
+  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::upperRight, 0, 1280, 720), 1280 - 22 - 446, 22));
+  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::lowerRight, 0, 1280, 720), 1280 - 22 - 446, 720 - 22 - 216));
+  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::lowerLeft, 0, 1280, 720), 22, 720 - 22 - 216));
 }
 
 TEST(PlotPanel, ValuesThatNeverChangeAreDrawn) {
