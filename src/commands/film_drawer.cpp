@@ -8,6 +8,7 @@
 #include "commands/number_pair.h"
 #include "core/error.h"
 #include "core/interruption.h"
+#include "overlay/caption_check.h"
 #include "overlay/captions.h"
 
 namespace cradle {
@@ -31,6 +32,7 @@ PictureSize parseSize(const std::optional<std::string>& text, const Scene& scene
 PictureOrder::PictureOrder(const PictureOptions& options, const Scene& scene)
     : size(parseSize(options.size, scene)), shaders(options.shaders.value_or("")) {
   requireDrawingMemory(size.width, size.height);
+  requireRoomForWords(scene, size.width, size.height);
   if (options.overlay) overlays = parseOverlays(*options.overlay);
   if (overlays && overlays->plot == PlotKind::height) plottedBody(*overlays, scene);
 }

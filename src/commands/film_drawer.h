@@ -16,7 +16,8 @@ namespace cradle {
 
 /// What the command line says of pictures. Whatever is wrong with it shows before anything is simulated.
 struct PictureOrder {
-  /// Throws Error(usage), or Error(limit) where there is too little memory to draw.
+  /// Throws Error(usage), Error(limit) where there is too little memory to draw, or Error(scene) where words do not fit
+  /// into pictures of that size.
   PictureOrder(const PictureOptions& options, const Scene& scene);
 
   PictureSize size;

@@ -18,6 +18,7 @@
 #include "core/part_lock.h"
 #include "core/printable.h"
 #include "core/progress.h"
+#include "overlay/caption_check.h"
 #include "render/camera_path.h"
 #include "scene/count_bodies.h"
 #include "scene/load_scene.h"
@@ -152,6 +153,7 @@ Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
   warnOfAll(loaded.warnings);
   apply(options, loaded.scene);
   requireUsableCamera(loaded.scene);
+  requireReadableWords(loaded.scene);
   return std::move(loaded.scene);
 }
 

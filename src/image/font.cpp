@@ -4,6 +4,7 @@
 
 #include "image/font.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -24,6 +25,7 @@ namespace {
 // DejaVu Sans, in em.
 constexpr double kSmallLetters = 1120.0 / 2048, kCapitals = 1493.0 / 2048, kDescent = 483.0 / 2048;
 constexpr std::uint32_t kReplacement = 0xFFFD;  // of bytes that are no UTF-8
+constexpr std::uint32_t kFirstPrinted = 0x20;   // the space; what is before it are control characters
 
 const stbtt_fontinfo& font() {
   static const stbtt_fontinfo info = [] {
@@ -68,6 +70,21 @@ float scaleOf(const TextSize& size) {
   return stbtt_ScaleForMappingEmToPixels(&font(), static_cast<float>(size.em));
 }
 
+/// Adds a word to lines, broken where it is wider than a line; a line holds a character at least.
+void addWord(const std::string& word, const TextSize& size, double width, std::vector<std::string>& lines) {
+  if (!lines.empty() && textWidth(lines.back() + " " + word, size) <= width) {
+    lines.back() += " " + word;
+    return;
+  }
+  lines.emplace_back();
+  for (std::size_t begin = 0, end = 0; begin < word.size(); begin = end) {
+    nextCharacter(word, end);
+    const std::string character = word.substr(begin, end - begin);
+    if (!lines.back().empty() && textWidth(lines.back() + character, size) > width) lines.emplace_back();
+    lines.back() += character;
+  }
+}
+
 }  // namespace
 
 TextSize crispTextSize(double em) {
@@ -77,6 +94,27 @@ TextSize crispTextSize(double em) {
 
 double textWidth(const std::string& text, const TextSize& size) {
   return layOut(text, scaleOf(size), [](int, double) {});
+}
+
+std::optional<char32_t> lackedCharacter(const std::string& text) {
+  for (std::size_t next = 0; next < text.size();) {
+    const std::uint32_t character = nextCharacter(text, next);
+    if (character >= kFirstPrinted && stbtt_FindGlyphIndex(&font(), static_cast<int>(character)) == 0)
+      return static_cast<char32_t>(character);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> wrappedText(std::string text, const TextSize& size, double width) {
+  const auto isControl = [](unsigned char byte) { return byte < kFirstPrinted; };
+  std::replace_if(text.begin(), text.end(), isControl, ' ');
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    if (end > begin) addWord(text.substr(begin, end - begin), size, width, lines);
+    begin = end + 1;
+  }
+  return lines;
 }
 
 std::string fittedText(const std::string& text, const TextSize& size, double width) {

@@ -245,12 +245,14 @@ struct Caption {
   std::string text;
   double from = 0, to = std::numeric_limits<double>::infinity();  // s of the scene; half-open
   int body = kWorld;                                              // the one they go with; kWorld: none
+  std::string where = {};                                         // the text in the scene file
 };
 
 /// A picture of words that a film begins with.
 struct TitleCard {
   std::string title, subtitle;
   double seconds = 3;                               // of the film
+  std::string titleWhere = {}, subtitleWhere = {};  // in the scene file
 };
 
 struct Scene {

@@ -145,6 +145,40 @@ class Scenes(InTemporaryFolder):
         self.assertEqual(result.returncode, 0)
         self.assertRegex(result.stderr, r'^warning: .*s\.json:\d+:\d+ /pushes/0: the ray misses "ball" at 0\.05 s.*\n$')
 
+    def test_visual_runs_are_quiet_about_accuracy_if_asked(self):
+        """Cubes that slide on the ground give up what was promised: a warning, but of accuracies that are looked at alone."""
+        bodies = [{"name": "ground", "shape": {"plane": {}}, "motion": "static"}] + [
+            {"name": f"cube{i}", "shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "position": [0, 0.105 + 0.2 * i, 0], "linearVelocity": [1, 0, 0]}
+            for i in range(6)]
+        push = {"body": "cube0", "ray": {"origin": [0, 9, 5], "direction": [0, 0, -1]}, "force": [0, 0, -3], "start": 0.05, "duration": 0.02}
+        path = self.write("s.json", scene(duration=0.3, bodies=bodies, pushes=[push], camera={"position": [0, 1, 5]}))
+        misses, given_up = "the ray misses", "promised from"
+        for accuracy, quiet, told in (("visual", ["--quiet"], False), ("visual", [], True), ("1e-3", ["--quiet"], True)):
+            run = cradle("simulate", path, "-o", self.path("x.sqlite"), "--accuracy", accuracy, *quiet)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertIn(misses, run.stderr)
+            self.assertEqual(given_up in run.stderr, told, (accuracy, quiet, run.stderr))
+            promise, = sqlite3.connect(self.path("x.sqlite")).execute("select value from meta where key = 'promise'").fetchone()
+            self.assertIn("given up at", promise)
+        visual = self.write("v.json", {**json.loads(content(path)), "accuracy": "visual"})
+        for quiet in ([], ["--quiet"]):
+            run = cradle("video", visual, "-o", self.path("f.gif"), *quiet)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertIn(misses, run.stderr)
+            self.assertEqual(given_up in run.stderr, not quiet)
+
+    def test_words_that_cannot_be_shown_are_told_with_their_place(self):
+        captions = [{"text": "fine"}, {"text": "not \u6f22"}]
+        path = self.write("s.json", scene(captions=captions, titleCard={"title": "Title", "subtitle": "\U0001f680"}))
+        for command in (["check", path], ["simulate", path, "-o", self.path("x.sqlite")], ["video", path, "-o", self.path("x.mp4")]):
+            result = self.refuses(3, ["/captions/1/text: found the character \"\u6f22\" (U+6F22)", "/titleCard/subtitle: found the character"], *command)
+            self.assertRegex(result.stderr, r"s\.json:\d+:\d+ /captions/1/text")
+        many = self.write("m.json", scene(captions=[{"text": f"caption {i}"} for i in range(40)]))
+        self.refuses(3, ["captions are shown at 0 s", "allowed is the height that there is"], "check", many)
+        wide = self.write("w.json", scene(captions=[{"text": "w" * 250}], output={"width": 640, "height": 360}))
+        self.assertEqual(cradle("check", wide).returncode, 0)
+        self.refuses(3, ["in a picture of", "30x360"], "render", wide, "-o", self.path("f"), "--size", "30x360")
+
     def test_links_and_planes_that_cannot_be_are_told_with_their_place(self):
         rope = {"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 2, 0], "maxLength": 1.5}
         self.refuses(3, ["/ropes/0/maxLength: ", "1.5 m", "2 m apart"], "check", self.write("s.json", scene(ropes=[rope])))
@@ -367,6 +401,29 @@ class Trajectories(InTemporaryFolder):
         for arguments in ([other, "-o", other], [run, "-o", other, "--quantity", "error", "--reference", other]):
             self.refuses(5, ["other.svg"], "plot", *arguments)
             self.assertEqual(content(other), content(run))
+
+    def test_plot_takes_names_with_commas_and_several_quantities(self):
+        ball = {"name": "ball, red", "shape": {"sphere": {"radius": 0.1}}}
+        path = self.write("s.json", scene(bodies=[ball]))
+        chart = self.path("chart.svg")
+        result = cradle("plot", path, "-o", chart, "--quantity", "height:ball, red", "--quantity", "energy,energyError")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        text = content(chart).decode()
+        for word in ("height of ball, red (m)", "energy (J)", "energy error (J)"):
+            self.assertIn(word, text)
+        self.refuses(2, ['"ball"', "there are ball, red"], "plot", path, "-o", chart, "--quantity", "height:ball,energy", leaves=self.listing())
+
+    def test_plot_says_what_it_shows(self):
+        spring = {"name": "stiff", "bodyA": "ball", "anchorA": [0, 0.1, 0], "anchorB": [0, 1, 0], "stiffness": 1e5, "restLength": 0.5}
+        stiff = self.write("stiff.json", scene(name="A stiff spring", springs=[spring], duration=2, method={"name": "explicitEuler", "timeStep": 0.01}))
+        soft = self.write("soft.json", scene(name="A ball that falls"))
+        chart = self.path("chart.svg")
+        self.assertEqual(cradle("plot", stiff, "-o", chart, "--quantity", "height:ball").returncode, 0)
+        self.assertRegex(content(chart).decode(), r"A stiff spring \(unstable after [0-9.]+ s\)")
+        self.assertEqual(cradle("plot", stiff, soft, "-o", chart).returncode, 0)
+        self.assertIn("A stiff spring, A ball that falls", content(chart).decode())
+        for methods in ([], ["--methods", "plan"]):
+            self.refuses(2, ["--time-step: found without --methods"], "plot", soft, "-o", self.path("x.svg"), "--time-step", "0.01", *methods)
 
     def test_interruption_keeps_a_valid_part(self):
         path = self.write("s.json", scene(duration=100000))

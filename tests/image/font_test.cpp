@@ -120,5 +120,30 @@ TEST(Font, TextIsReadAsUtf8) {
     EXPECT_GE(textWidth(std::string("a") + broken, size), textWidth("a\xEF\xBF\xBD", size) - 1e-6);
 }
 
+TEST(Font, LacksAreNamed) {
+  for (const char* text : {"", "Hello", "Größe ≤ 3 µm → ½ Ωж", "two\nlines\tand\x7f", "\xEF\xBF\xBD"})
+    EXPECT_FALSE(lackedCharacter(text)) << text;
+  EXPECT_EQ(lackedCharacter("a 漢字"), U'漢');
+  EXPECT_EQ(lackedCharacter("\U0001F680"), U'\U0001F680');
+}
+
+TEST(Font, TextIsWrappedBetweenWordsAndInsideOfWideOnes) {
+  const TextSize size = crispTextSize(20);
+  const std::string text = "Some words that\nare  short, and Übergrößenträgerhülle too";
+  for (const double width : {60.0, 100.0, 200.0, 5000.0}) {
+    std::string joined;
+    for (const std::string& line : wrappedText(text, size, width)) {
+      EXPECT_LE(textWidth(line, size), width);
+      EXPECT_FALSE(lackedCharacter(line)) << line;  // no character is broken
+      joined += line;
+    }
+    std::erase(joined, ' ');
+    EXPECT_EQ(joined, "Somewordsthatareshort,andÜbergrößenträgerhülletoo");
+  }
+  EXPECT_EQ(wrappedText(text, size, 5000).size(), 1u);
+  EXPECT_EQ(wrappedText("abc", size, 1).size(), 3u);
+  EXPECT_TRUE(wrappedText(" \n", size, 100).empty());
+}
+
 }  // namespace
 }  // namespace cradle

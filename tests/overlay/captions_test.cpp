@@ -80,6 +80,24 @@ TEST_F(Captions, OfABodyOutsideOfThePictureAreNotDrawn) {
   EXPECT_TRUE(drawnAt(30).isNone());
 }
 
+// After 1 s both balls are as high, and 1 m apart: less than their labels are wide.
+TEST_F(Captions, OfBodiesNearEachOtherAreApart) {
+  const auto drawnWith = [&](std::vector<Caption> captions) {
+    scene_.captions = std::move(captions);
+    Image image(kWidth, kHeight);
+    drawCaptions(scene_, frameAt(60), {view_.camera, kWidth, kHeight}, image);
+    return image;
+  };
+  const Caption first{"the one that flies", 0, 9, 0}, second{"the one that falls", 0, 9, 2};
+  const auto lightIn = [](const Image& image) {
+    long count = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); i += 3) count += image.pixels[i] > 200;
+    return count;
+  };
+  const long light = lightIn(drawnWith({first})) + lightIn(drawnWith({second}));
+  EXPECT_NEAR(static_cast<double>(lightIn(drawnWith({first, second}))), static_cast<double>(light), 0.02 * light);
+}
+
 TEST(TitleCard, HasItsWordsInTheMiddle) {
   const Image card = drawTitleCard({"Balls", "that fall", 3}, kWidth, kHeight),
               blank = drawTitleCard({"", "", 3}, kWidth, kHeight);
