@@ -61,7 +61,8 @@ Image FilmDrawer::draw(long number) {
   Image image = renderer_.render(frame, camera);
   if (overlay_) overlay_->draw(frame, image);
   if (!source_.drawnScene().captions.empty())
-    drawCaptions(source_.drawnScene(), frame, {camera, image.width, image.height}, image);
+    drawCaptions(source_.drawnScene(), frame, {camera, image.width, image.height},
+                 overlay_ ? overlay_->upperPanels(image.width, image.height) : std::vector<PicturePart>(), image);
   return image;
 }
 

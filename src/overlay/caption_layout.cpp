@@ -4,8 +4,6 @@
 #include <iterator>
 #include <sstream>
 
-#include "overlay/label_places.h"
-
 namespace cradle {
 namespace {
 
@@ -19,7 +17,7 @@ constexpr double kCaptionGap = 0.5;                       // between captions, i
 
 LabelRoom roomOf(int width, int height) {
   const double edge = kCaptionFromEdge * height;
-  return {edge, edge, width - edge, height - edge};
+  return {{edge, edge, width - edge, height - edge}};
 }
 
 /// The height that the captions at the bottom take, with the gaps above them.
@@ -97,14 +95,17 @@ std::vector<PlacedPanel> labelsInRows(const std::vector<ShownCaption>& captions,
   return placed;
 }
 
-std::vector<PlacedPanel> placedLabels(const std::vector<ShownCaption>& captions, const LabelRoom& room, int width,
+/// In the largest text that lets all be apart.
+std::vector<PlacedPanel> placedLabels(const std::vector<ShownCaption>& captions, LabelRoom room, int width,
                                       int height) {
   std::optional<std::vector<PlacedPanel>> placed;
-  fittingEm(kLabelText * height, kSmallestText * height, [&](double em) {
+  const auto fits = [&](double em) {
     placed = stackedLabels(captions, em, room, width, height);
     return placed.has_value();
-  });
-  if (!placed) placed = stackedLabels(captions, kSmallestText * height, room, width, height);
+  };
+  const auto place = [&] { fits(fittingEm(kLabelText * height, kSmallestText * height, fits)); };
+  place();
+  if (!placed && !room.panels.empty()) room.panels.clear(), place();
   return placed ? *placed : labelsInRows(captions, room, width, height);
 }
 
@@ -130,8 +131,10 @@ bool hasWholeWords(const std::string& text, const TextSize& size, double width) 
 
 }  // namespace
 
-std::vector<PlacedPanel> layOutCaptions(const std::vector<ShownCaption>& captions, int width, int height) {
+std::vector<PlacedPanel> layOutCaptions(const std::vector<ShownCaption>& captions,
+                                        const std::vector<PicturePart>& panels, int width, int height) {
   LabelRoom room = roomOf(width, height);
+  room.panels = panels;
   const double forLabels = heightOfRows(leastExtents(captions, width, height), width, height);
   const double em = fittingEm(kCaptionText * height, kSmallestText * height, [&](double tried) {
     const double gap = forLabels > 0 ? 0 : kCaptionGap * crispTextSize(tried).em;

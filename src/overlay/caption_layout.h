@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "overlay/label_places.h"
 #include "overlay/text_panel.h"
 #include "scene/scene.h"
 
@@ -25,8 +26,10 @@ struct PlacedPanel {
 };
 
 /// The panels of captions, in their order but for those of bodies that are not seen: those of bodies beside them and
-/// apart from each other, others one above the other at the bottom. Text is as large as lets all be in the picture.
-std::vector<PlacedPanel> layOutCaptions(const std::vector<ShownCaption>& captions, int width, int height);
+/// apart from each other, and below `panels` at the upper edge if that can be; others one above the other at the
+/// bottom. Text is as large as lets all be in the picture.
+std::vector<PlacedPanel> layOutCaptions(const std::vector<ShownCaption>& captions,
+                                        const std::vector<PicturePart>& panels, int width, int height);
 
 /// The size of a caption's panel with the smallest text (pixels).
 struct CaptionExtent {

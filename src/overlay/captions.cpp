@@ -53,9 +53,11 @@ void fill(const Ink& ink, Canvas& canvas) {
 
 }  // namespace
 
-void drawCaptions(const Scene& scene, const Frame& frame, const Lens& lens, Image& image) {
+void drawCaptions(const Scene& scene, const Frame& frame, const Lens& lens, const std::vector<PicturePart>& upperPanels,
+                  Image& image) {
   Canvas canvas(image);
-  const std::vector<PlacedPanel> panels = layOutCaptions(shownCaptions(scene, frame, lens), lens.width, lens.height);
+  const std::vector<PlacedPanel> panels =
+      layOutCaptions(shownCaptions(scene, frame, lens), upperPanels, lens.width, lens.height);
   for (const PlacedPanel& panel : panels)
     if (panel.place) drawLeader(panel, lens.height, canvas);
   for (const PlacedPanel& panel : panels) drawTextPanel(canvas, panel.panel, panel.middle, panel.top);

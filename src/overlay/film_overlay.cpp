@@ -164,6 +164,19 @@ void FilmOverlay::draw(const Frame& frame, Image& image) {
   if (choice_.time) drawTimePanel(canvas, scene_, frame.time);
 }
 
+std::vector<PicturePart> FilmOverlay::upperPanels(int width, int height) const {
+  std::vector<PicturePart> panels;
+  if (choice_.time) {
+    const PicturePoint end = timePanelEnd(scene_, width, height);
+    panels.push_back({0, 0, end.x, end.y});
+  }
+  if (choice_.plot && plot_.corner == PlotCorner::upperRight) {
+    const auto [low, high] = plotPanelAt(plot_.corner, plot_.upperEdge, width, height);
+    panels.push_back({low.x, low.y, high.x, high.y});
+  }
+  return panels;
+}
+
 /// Brings the frames that end at `now` into trailFrames_, reading those that are not there.
 void FilmOverlay::readTrail(long now) {
   const double perSecond = scene_.output.framesPerSecond;

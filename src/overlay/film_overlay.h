@@ -3,6 +3,7 @@
 #include <deque>
 
 #include "image/canvas.h"
+#include "overlay/label_places.h"
 #include "overlay/lens.h"
 #include "overlay/overlay_choice.h"
 #include "overlay/plot_panel.h"
@@ -33,6 +34,9 @@ class FilmOverlay {
 
   /// `image` is the picture of `frame`. O(bodies x length of their trails).
   void draw(const Frame& frame, Image& image);
+
+  /// The panels that lie at the upper edge of pictures of that size.
+  std::vector<PicturePart> upperPanels(int width, int height) const;
 
  private:
   struct ImpulseText {

@@ -21,11 +21,25 @@ std::vector<std::size_t> orderOf(const std::vector<Label>& labels) {
   return order;
 }
 
-/// 1 where one label is above the other, in part, and 0 where they are farther aside than they are high: labels that
-/// come together make way for each other before they meet.
-double nearness(const Label& a, const Label& b) {
-  const double aside = std::max(a.left, b.left) - std::min(a.left + a.width, b.left + b.width);
-  return std::clamp(1 - aside / std::max(a.height, b.height), 0.0, 1.0);
+/// 1 where a label is above or below a part of the picture, and 0 where it is farther aside than it is high: labels
+/// that come together make way for each other before they meet.
+double nearness(const Label& label, double left, double right) {
+  const double aside = std::max(label.left, left) - std::min(label.left + label.width, right);
+  return std::clamp(1 - aside / label.height, 0.0, 1.0);
+}
+
+double nearness(const Label& label, const Label& other) {
+  return nearness(label, other.left, other.left + other.width);
+}
+
+/// The highest that a label may be.
+double ceilingOf(const Label& label, const LabelRoom& room, double gap) {
+  double ceiling = room.top;
+  for (const PicturePart& panel : room.panels) {
+    const double fall = panel.bottom + gap - room.top;
+    ceiling = std::max(ceiling, room.top + nearness(label, panel.left, panel.right) * fall);
+  }
+  return ceiling;
 }
 
 }  // namespace
@@ -46,7 +60,7 @@ bool stackLabels(const LabelRoom& room, double gap, std::vector<Label>& labels) 
   // What does not fit below the upper edge comes down again, and what is below it with it.
   for (std::size_t k = order.size(); k-- > 0;) {
     Label& label = labels[order[k]];
-    const double start = std::max(label.top, room.top);
+    const double start = std::max(label.top, ceilingOf(label, room, gap));
     label.top = start;
     for (std::size_t i = k + 1; i < order.size(); ++i) {
       const Label& above = labels[order[i]];

@@ -6,9 +6,14 @@
 
 namespace cradle {
 
-/// The part of a picture that labels may take (pixels).
-struct LabelRoom {
+/// A part of a picture (pixels).
+struct PicturePart {
   double left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// Where labels may be: in a part of a picture, below panels at its upper edge.
+struct LabelRoom : PicturePart {
+  std::vector<PicturePart> panels = {};
 };
 
 /// A rectangle with the name of something, and the place of that (pixels).

@@ -48,7 +48,7 @@ std::string quotedForGnuplot(const std::string& text) {
   return result + "'";
 }
 
-std::string fittedForGnuplot(const std::string& text, double fontSize, double width, double height) {
+FittedText fittedForGnuplot(const std::string& text, double fontSize, double width, double height) {
   constexpr double kLeastSize = 6, kSmaller = 0.94, kLine = 1.3;  // the line in em
   double size = fontSize;
   const auto lines = [&] { return wrappedText(printableLine(text), {kChartEm * size, 0, 0}, width); };
@@ -56,7 +56,8 @@ std::string fittedForGnuplot(const std::string& text, double fontSize, double wi
   while (size > kLeastSize && lines().size() > 1 && isTooHigh()) size *= kSmaller;
   std::string quoted;
   for (const std::string& line : lines()) quoted += (quoted.empty() ? "" : ".\"\\n\".") + quotedForGnuplot(line);
-  return fmt::format("{} font ',{:.3g}'", quoted.empty() ? "''" : quoted, size);
+  const double below = std::max(static_cast<double>(lines().size()) - 1, 0.0) * kLine * kChartEm * size;
+  return {fmt::format("{} font ',{:.3g}'", quoted.empty() ? "''" : quoted, size), below};
 }
 
 std::string drawingCommands(const std::string& drawing, ChartFormat format, int height) {

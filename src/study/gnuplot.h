@@ -20,8 +20,14 @@ std::string quotedForGnuplot(const std::string& text);
 /// Pixels of a letter's em for each unit of a font's size, in pictures of drawingCommands().
 constexpr double kChartEm = 4.0 / 3;
 
-/// The same with its font, wrapped and made smaller so that it is at most as wide and high as that (pixels).
-std::string fittedForGnuplot(const std::string& text, double fontSize, double width, double height);
+/// A text for gnuplot that has its place.
+struct FittedText {
+  std::string command;    // the text, quoted, and its font
+  double belowFirst = 0;  // pixels, of the lines after the first one
+};
+
+/// Wraps a text and makes it smaller so that it is at most as wide and high as that (pixels).
+FittedText fittedForGnuplot(const std::string& text, double fontSize, double width, double height);
 
 enum class ChartFormat { svg, png };
 

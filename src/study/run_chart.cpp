@@ -13,13 +13,14 @@ namespace {
 
 constexpr int kPanelHeight = 560, kFrameHeight = 130;  // pixels
 // Pixels that texts may take, beside axes and on the whole width.
-constexpr double kBesidePanel = 460, kBesideAxis = 80, kBelowPanel = 1300, kBelowAxis = 30, kWholeWidth = 1500,
-                 kTitleHeight = 56;
+constexpr double kBesidePanel = 460, kBesideAxis = 80, kBelowPanel = 1300, kBelowAxis = 30, kTitleWidth = 1500,
+                 kTitleHeight = 50;
 constexpr double kFontSize = 15, kTitleSize = 22, kMinLegendSize = 6;
 constexpr int kRunLegendRow = 26, kUsualLegendRows = 2;  // pixels
-constexpr double kLegendSample = 70;                  // pixels, beside a name
-constexpr double kMargin = 0.05;                      // of the values' range
-constexpr double kShownOfFailed = 0.9;                // of a failed run, by time: growing without bound comes after
+// Pixels: gnuplot takes names to be narrower than they are, and a column to be as wide as it takes its names to be.
+constexpr double kLegendWidth = 1300, kLegendSample = 100;
+constexpr double kMargin = 0.05;        // of the values' range
+constexpr double kShownOfFailed = 0.9;  // of a failed run, by time: growing without bound comes after
 
 struct ValueRange {
   double low = INFINITY, high = -INFINITY;
@@ -54,8 +55,8 @@ std::string abscissaCommands(const RunPanel& panel) {
 
 std::string panelAxes(const RunPanel& panel) {
   std::string text = fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\n",
-                                 fittedForGnuplot(panel.axes.x, kFontSize, kBelowPanel, kBelowAxis),
-                                 fittedForGnuplot(panel.axes.y, kFontSize, kBesidePanel, kBesideAxis));
+                                 fittedForGnuplot(panel.axes.x, kFontSize, kBelowPanel, kBelowAxis).command,
+                                 fittedForGnuplot(panel.axes.y, kFontSize, kBesidePanel, kBesideAxis).command);
   const ValueRange range = valueRange(panel);
   text += abscissaCommands(panel);
   if (panel.axes.isLogarithmic)
@@ -86,10 +87,11 @@ struct Legend {
 Legend legendOf(const std::vector<std::string>& names) {
   double widest = 0;  // of an em
   for (const std::string& name : names) widest = std::max(widest, textWidth(printableLine(name), {1, 0, 0}));
-  const double room = kWholeWidth - kLegendSample;
+  const double room = kLegendWidth - kLegendSample;
   Legend legend;
   legend.fontSize = std::clamp(room / (widest * kChartEm), kMinLegendSize, kFontSize);
-  const double columns = std::max(1.0, std::floor(kWholeWidth / (widest * kChartEm * legend.fontSize + kLegendSample)));
+  const double columns =
+      std::max(1.0, std::floor(kLegendWidth / (widest * kChartEm * legend.fontSize + kLegendSample)));
   legend.rows = std::max(kUsualLegendRows, static_cast<int>(std::ceil(static_cast<double>(names.size()) / columns)));
   return legend;
 }
@@ -163,12 +165,13 @@ std::string runChartCommands(const std::string& title, const std::vector<RunPane
   const int height = kFrameHeight - 70 + below + kPanelHeight * static_cast<int>(panels.size());
   const double top = 1 - 60.0 / height,
                panelHeight = (top - static_cast<double>(below) / height) / static_cast<double>(panels.size());
+  const FittedText shownTitle = fittedForGnuplot(title, kTitleSize, kTitleWidth, kTitleHeight);
   std::string text = fmt::format(
       "set multiplot\nset border linecolor rgb '#404040'\nset tics nomirror\n"
       "set grid xtics ytics linecolor rgb '#d0d0d0' linewidth 1 dashtype 1\n"
       "set label 1 {} at screen 0.5, {} center noenhanced\nset lmargin screen 0.125\nset rmargin screen "
       "0.97\n",
-      fittedForGnuplot(title, kTitleSize, kWholeWidth, kTitleHeight), 1 - 35.0 / height);
+      shownTitle.command, 1 - (35 - shownTitle.belowFirst / 2) / height);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const bool isLast = i + 1 == panels.size();
     const double above = top - static_cast<double>(i) * panelHeight;

@@ -177,7 +177,7 @@ class Scenes(InTemporaryFolder):
         self.refuses(3, ["captions are shown at 0 s", "allowed is the height that there is"], "check", many)
         wide = self.write("w.json", scene(captions=[{"text": "w" * 250}], output={"width": 640, "height": 360}))
         self.assertEqual(cradle("check", wide).returncode, 0)
-        self.refuses(3, ["in a picture of", "30x360"], "render", wide, "-o", self.path("f"), "--size", "30x360")
+        self.refuses(3, ["of a picture of 30x360"], "render", wide, "-o", self.path("f"), "--size", "30x360")
 
     def test_links_and_planes_that_cannot_be_are_told_with_their_place(self):
         rope = {"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 2, 0], "maxLength": 1.5}

@@ -13,7 +13,7 @@ class CaptionPlaces : public ::testing::TestWithParam<std::pair<int, int>> {
     places_.push_back(place);
   }
 
-  std::vector<PlacedPanel> placed() const { return layOutCaptions(shown(), width_, height_); }
+  std::vector<PlacedPanel> placed() const { return layOutCaptions(shown(), panels_, width_, height_); }
 
   std::vector<ShownCaption> shown() const {
     std::vector<ShownCaption> shown;
@@ -47,6 +47,7 @@ class CaptionPlaces : public ::testing::TestWithParam<std::pair<int, int>> {
   }
 
   int width_ = GetParam().first, height_ = GetParam().second;
+  std::vector<PicturePart> panels_;
   std::vector<Caption> captions_;
   std::vector<std::optional<PicturePoint>> places_;
 };
@@ -62,7 +63,8 @@ TEST_P(CaptionPlaces, LabelsOfBodiesNearEachOtherAreApart) {
 }
 
 TEST_P(CaptionPlaces, LabelsStandAboveCaptions) {
-  for (int i = 0; i < 4; ++i) add("A caption that is rather long, so that it is as wide as the picture is at " + std::to_string(i));
+  for (int i = 0; i < 4; ++i)
+    add("A caption that is rather long, so that it is as wide as the picture is at " + std::to_string(i));
   for (int i = 0; i < 5; ++i) add("low", PicturePoint{width_ / 2.0, height_ - 3.0 * i});
   expectReadable();
 }
@@ -72,6 +74,17 @@ TEST_P(CaptionPlaces, LabelsInTheCornersAreInThePicture) {
     for (const double y : {0.0, 1.0})
       for (int i = 0; i < 3; ++i) add("corner", PicturePoint{x * width_, y * height_});
   expectReadable();
+}
+
+// Below a panel of a quarter of the picture there is room; one of half of it has to bear them.
+TEST_P(CaptionPlaces, LabelsAreBelowPanelsIfThatCanBe) {
+  for (int i = 0; i < 3; ++i) add("body", PicturePoint{0.6 * width_ + i, 0.3 * height_});
+  for (const double part : {0.5, 1.0}) {
+    panels_ = {{0.5 * width_, 0, 1.0 * width_, part * height_}};
+    expectReadable();
+    if (part == 1) break;
+    for (const PlacedPanel& panel : placed()) EXPECT_GT(panel.top, part * height_);
+  }
 }
 
 TEST_P(CaptionPlaces, ManyCaptionsAreSmaller) {

@@ -30,7 +30,7 @@ class Captions : public Film {
 
   Drawn drawnAt(long number) const {
     Image image(kWidth, kHeight);
-    drawCaptions(scene_, frameAt(number), {view_.camera, kWidth, kHeight}, image);
+    drawCaptions(scene_, frameAt(number), {view_.camera, kWidth, kHeight}, {}, image);
     return drawnOn(image);
   }
 };
@@ -85,17 +85,17 @@ TEST_F(Captions, OfBodiesNearEachOtherAreApart) {
   const auto drawnWith = [&](std::vector<Caption> captions) {
     scene_.captions = std::move(captions);
     Image image(kWidth, kHeight);
-    drawCaptions(scene_, frameAt(60), {view_.camera, kWidth, kHeight}, image);
+    drawCaptions(scene_, frameAt(60), {view_.camera, kWidth, kHeight}, {}, image);
     return image;
   };
   const Caption first{"the one that flies", 0, 9, 0}, second{"the one that falls", 0, 9, 2};
   const auto lightIn = [](const Image& image) {
-    long count = 0;
+    double count = 0;
     for (std::size_t i = 0; i < image.pixels.size(); i += 3) count += image.pixels[i] > 200;
     return count;
   };
-  const long light = lightIn(drawnWith({first})) + lightIn(drawnWith({second}));
-  EXPECT_NEAR(static_cast<double>(lightIn(drawnWith({first, second}))), static_cast<double>(light), 0.02 * light);
+  const double light = lightIn(drawnWith({first})) + lightIn(drawnWith({second}));
+  EXPECT_NEAR(lightIn(drawnWith({first, second})), light, 0.02 * light);
 }
 
 TEST(TitleCard, HasItsWordsInTheMiddle) {

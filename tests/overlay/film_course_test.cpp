@@ -113,6 +113,10 @@ TEST_F(Film, PlotLiesBelowTheTimeWhereThereIsNoRoomBesideIt) {
         plot += !isTime && image.at(x, y)[2] > 0;
       }
     EXPECT_GT(marked, 500);
+    const std::vector<PicturePart> panels =
+        FilmOverlay({scene_, view_, width, height, frameAt, kFrames, {}}, both).upperPanels(width, height);
+    ASSERT_EQ(panels.size(), 2u);
+    EXPECT_LE(panels[0].bottom, panels[0].right > panels[1].left ? panels[1].top : height);
     EXPECT_EQ(changed, 0) << width;
     EXPECT_GT(plot, 0.25 * height * std::min(0.62 * height, 0.9 * width)) << width;  // all of it
   }

@@ -130,8 +130,8 @@ TEST(RunQuantity, WhatTheSceneHasNotIsRefused) {
 }
 
 TEST(RunQuantity, NamesMayHaveCommas) {
-  const Made made(R"("bodies": [)" + ball("a, b", "[0, 5, 0]", "[0, 0, 0]") + ", " + ball("a", "[0, 6, 0]", "[0, 0, 0]") +
-                      ", " + ball("b,energy", "[0, 7, 0]", "[0, 0, 0]") + "]",
+  const Made made(R"("bodies": [)" + ball("a, b", "[0, 5, 0]", "[0, 0, 0]") + ", " +
+                      ball("a", "[0, 6, 0]", "[0, 0, 0]") + ", " + ball("b,energy", "[0, 7, 0]", "[0, 0, 0]") + "]",
                   R"("duration": 0.1, )");
   const std::vector<std::string> names = namesWithCommas(made.scene);
   EXPECT_THAT(names, ::testing::ElementsAre("a, b", "b,energy"));
@@ -152,10 +152,10 @@ TEST(RunQuantity, NamesMayHaveCommas) {
 }
 
 TEST(RunChart, LongTextsAreWrappedAndSmaller) {
-  EXPECT_EQ(fittedForGnuplot("it's", 15, 460, 80), "'it''s' font ',15'");
+  EXPECT_EQ(fittedForGnuplot("it's", 15, 460, 80).command, "'it''s' font ',15'");
   std::string name;
   while (name.size() < 240) name += "Pendulum `date` \\n $x ";
-  const std::string fitted = fittedForGnuplot(name, 15, 460, 80);
+  const std::string fitted = fittedForGnuplot(name, 15, 460, 80).command;
   EXPECT_THAT(fitted, HasSubstr("'.\"\\n\".'"));
   EXPECT_THAT(fitted, Not(HasSubstr("font ',15'")));
   std::string words;  // all that is in single quotes
@@ -169,11 +169,13 @@ TEST(RunChart, LongTextsAreWrappedAndSmaller) {
   EXPECT_EQ(words, name);
 }
 
-// Names of 60 letters: two stand beside each other on 1600 pixels, and five take three rows.
+// Names of 60 letters: two do not fit beside each other on 1300 pixels, and five take five rows.
 TEST(RunChart, LegendHasRowsForItsNames) {
   RunPanel panel{{"time (s)", "energy (J)"}, {}, {}};
   for (char letter = 'a'; letter < 'f'; ++letter)
     panel.curves.push_back({std::string(60, letter), {0, 1}, {1, 2}}), panel.hasFailed.push_back(0);
+  EXPECT_THAT(runChartCommands("t", {panel}, ChartFormat::svg), HasSubstr("maxrows 5"));
+  for (QuantityCurve& curve : panel.curves) curve.name.resize(30);
   EXPECT_THAT(runChartCommands("t", {panel}, ChartFormat::svg), HasSubstr("maxrows 3"));
   for (QuantityCurve& curve : panel.curves) curve.name.resize(5);
   EXPECT_THAT(runChartCommands("t", {panel}, ChartFormat::svg), HasSubstr("maxrows 2"));
