@@ -121,7 +121,7 @@ TEST(Font, TextIsReadAsUtf8) {
 }
 
 TEST(Font, LacksAreNamed) {
-  for (const char* text : {"", "Hello", "Größe ≤ 3 µm → ½ Ωж", "two\nlines\tand\x7f", "\xEF\xBF\xBD"})
+  for (const char* text : {"", "Hello", "Größe ≤ 3 µm → ½ Ωж", "two\nlines\tand\x1f", "\xEF\xBF\xBD"})
     EXPECT_FALSE(lackedCharacter(text)) << text;
   EXPECT_EQ(lackedCharacter("a 漢字"), U'漢');
   EXPECT_EQ(lackedCharacter("\U0001F680"), U'\U0001F680');
