@@ -14,7 +14,7 @@ FRAMES = {
     "box_tray": 60, "cart": 260, "coupled_pendulums": 400, "coupled_pendulums_rod": 150, "dominoes": 110,
     "double_pendulum": 250, "drag_and_drop": 145, "dropped_model": 30, "car": 150, "four_bar": 50, "gate": 40,
     "gears_fall": 30, "gimbal_lock": 50, "gears_on_platform": 40, "divided_gas": 300, "cars_among_pendulums": 90, "avalanche": 90,
-    "chains_that_throw": 50,
+    "chains_that_throw": 50, "dice": 20, "orientation_drift": 400, "overlap_by_mass": 300,
     "hanging_chain": 60, "hard_sphere_gas": 60, "heavy_top_stack": 120, "kapitza": 130, "lagrange_top": 150,
     "newtons_cradle": 28, "newtons_cradles": 30, "piston": 25, "platform_drop": 45, "platform_drop_rods": 40,
     "rod_pendulum": 60,

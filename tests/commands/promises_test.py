@@ -86,7 +86,7 @@ class Promises(unittest.TestCase):
         most = 4e-3 if name == "ball_tray.json" else 2e-3
         if all(line.endswith("; kept") for line in self.meta("promise").splitlines()):
             most = min(most, 10 * float(self.meta("accuracy")))
-        self.assertLess(numerical, most * kinetic)
+        self.assertLessEqual(numerical, most * kinetic)  # of what is moved apart and stays, both are 0
 
     def test_of_every_scene_are_what_the_run_does(self):
         for name in sorted(os.listdir(SCENES)):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes orientation_drift.json: one turn, added up in small steps by three ways to keep an orientation.
+"""Writes scenes/orientation_drift.json: one turn, added up in small steps by three ways to keep an orientation.
 
-    python3 make_orientation_drift.py            # plain Python 3; prints the numbers that the captions state
+    make_orientation_drift.py SOURCE_FOLDER      # plain Python 3; prints the numbers that the captions state
 
 The angular velocity w (world's frame) is constant; a step h turns by the angle a = |w| h about the unit axis u. R takes
 points of the body to the world, its columns x, y, z are the axes of the body; [w] is the matrix of the product w x.
@@ -16,8 +16,7 @@ balls that are led by key frames, one a step, each at R times its place in the b
 the edges and have no effect. The other two are one rigid body each, welded to a needle that is led by key frames.
 Between key frames Cradle moves smoothly.
 """
-import json
-import math
+import json, math, os, sys
 
 STEP, DEGREES_A_STEP, STEPS = 1 / 15, 6, 120  # s; two turns in 8 s
 BEGIN, DURATION = 1.0, 11.5                   # s
@@ -238,7 +237,7 @@ scene = {
     "description": f"A cube turns about its diagonal, by {DEGREES_A_STEP} degrees a step and {STEPS} steps. "
                    f"Explicit Euler makes its matrix grow: {volume:.2f} times the volume. Gram-Schmidt keeps it "
                    f"rigid and turns it wrongly, by {wrong:.1f} degrees. A unit quaternion is {behind:.1f} degrees "
-                   "behind. Made by make_orientation_drift.py.",
+                   "behind. Made by docs/make_orientation_drift.py.",
     "duration": DURATION,
     "gravity": [0, 0, 0],
     "camera": {"position": [0.2, 1.5, 4.85], "target": [0.2, 0.52, 0], "verticalFieldOfViewDegrees": 23},
@@ -292,5 +291,5 @@ def written(value, indent=0):
     return flat
 
 
-with open("orientation_drift.json", "w", encoding="utf-8") as file:
+with open(os.path.join(sys.argv[1], "scenes/orientation_drift.json"), "w", encoding="utf-8") as file:
     file.write(written(scene) + "\n")
