@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 
@@ -16,7 +17,8 @@ namespace {
 // a direction that is constrained by less than its square root gives way instead of being thrown about by rounding.
 // Refinement takes out the error that this makes elsewhere: each one leaves 1e-8 / (smallest other eigenvalue of the
 // scaled matrix) of it.
-constexpr double kRegularPivot = 1e-6;  // of its diagonal entry: above, rows are independent
+constexpr double kRegularPivot = 1e-6;   // of its diagonal entry: above, rows are independent
+constexpr double kRoundedPivot = 1e-12;  // of its diagonal entry: below, rounding is all that is left of it
 constexpr double kRegularisation = 1e-8;
 constexpr double kRefined = 1e-15;   // residual that is left, as a part of the right-hand side
 constexpr int kMaxRefinements = 60;  // 3 are usual; the last ones leave 1e-15 if each leaves half
@@ -47,7 +49,36 @@ void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFra
   assemble();
   factor_->factorize();
   isRegular_ = factor_->leastPivot() > kRegularPivot;
-  if (!isRegular_) factor_->factorize(kRegularisation);
+  if (isRegular_) return;
+  const bool areIndependent = factor_->leastPivot() > kRoundedPivot && areRowsIndependent();
+  factor_->factorize(areIndependent ? 0 : kRegularisation);
+}
+
+/// Whether the rows are independent by where the bodies are, and it is their masses that leave small pivots: those of
+/// the tie of a heavy body to a light one are a part of their diagonal that is the ratio of the masses.
+bool ConstraintSolver::areRowsIndependent() {
+  assembleWithEqualMasses();
+  factor_->factorize();
+  const bool areIndependent = factor_->leastPivot() > kRegularPivot;
+  assemble();
+  return areIndependent;
+}
+
+/// The Delassus operator if all bodies had a mass of 1 kg, and their radii of gyration.
+void ConstraintSolver::assembleWithEqualMasses() {
+  ownResponses_ = responses_;
+  const auto massOf = [this](int body) {
+    const bool isMoved = body != kFixed && !bodies_[static_cast<std::size_t>(body)].isDriven();
+    return isMoved ? bodies_[static_cast<std::size_t>(body)].mass : 1.0;
+  };
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const double massA = massOf(blocks_[i].bodyA), massB = massOf(blocks_[i].bodyB);
+    responses_[i].inverseMassA *= massA, responses_[i].inverseMassB *= massB;
+    if (blocks_[i].turnsA) responses_[i].turnA *= massA;
+    if (blocks_[i].turnsB) responses_[i].turnB *= massB;
+  }
+  assemble();
+  responses_ = ownResponses_;
 }
 
 void ConstraintSolver::findBlocks(const VectorX& state, const std::vector<BodyFrame>& frames) {
@@ -241,15 +272,18 @@ void ConstraintSolver::putMultipliers(VectorX& all) const {
 }
 
 // Newton's method, damped as by Levenberg and Marquardt: a step that does not help, or that goes far for a slow gain,
-// was led astray by directions that are hardly constrained, and is tried again with less trust in them.
+// is tried again. Ties that pull a light body both ways turn it far there and back, and turns do not commute: where
+// that leaves more than rounding, what they do to each body is added up before. After that the step was led astray by
+// directions that are hardly constrained, and is tried again with less trust in them.
 double ConstraintSolver::project(VectorX& state) {
   double regularisation = kRegularisation;
+  bool inSum = false;
   factorize(state);
   const double found = largestError();
   double error = found;
   for (int i = 0; i < kMaxProjectionSteps && !holdWithin(0, 1); ++i) {
     undisplaced_ = state;
-    const double farthest = displace(state);
+    const double farthest = displace(inSum, state);
     factorize(state);
     const double left = largestError();
     const bool isSound = farthest <= kMaxShiftRatio * error || (left < kConverged * error && farthest <= kFarthest);
@@ -259,8 +293,9 @@ double ConstraintSolver::project(VectorX& state) {
     }
     if (isSound && left < error) break;  // at the limit of rounding
     state = undisplaced_;
-    regularisation *= kMoreRegular;
     factorize(state);
+    if (!holdWithin(0, kLeftRoundings) && !std::exchange(inSum, true)) continue;
+    regularisation *= kMoreRegular;
     if (regularisation > kMaxRegularisation) break;
     factor_->factorize(regularisation);
   }
@@ -268,18 +303,27 @@ double ConstraintSolver::project(VectorX& state) {
   return found;
 }
 
-/// One step of Newton's method. Returns how far the body that moved most was shifted (m) or turned (rad).
-double ConstraintSolver::displace(VectorX& state) {
+/// One step of Newton's method, tie by tie, or in the sum for each body. Returns how far the body that moved most was
+/// shifted (m) or turned (rad).
+double ConstraintSolver::displace(bool inSum, VectorX& state) {
   forEachRow([this](const ConstraintBlock& block, std::size_t row, Eigen::Index index) {
     multipliers_[index] = -block.value[row];
   });
   factor_->solve(multipliers_);
   double farthest = 0;
-  addResponses([&](int body, const Vec3& shift, const Vec3& turn) {
+  const auto move = [&](int body, const Vec3& shift, const Vec3& turn) {
     centerOfMass(state, body) += shift;
     turnBody(state, body, turn);
     farthest = std::max({farthest, shift.norm(), turn.norm()});
-  });
+  };
+  if (!inSum) {
+    addResponses(move);
+    return farthest;
+  }
+  sum_.setZero(state.size());
+  addResponses(sum_);
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
+    move(body, linearVelocity(sum_, body), angularVelocity(sum_, body));
   return farthest;
 }
 
@@ -304,11 +348,13 @@ bool ConstraintSolver::leaveNoMotion(const VectorX& state, double error) {
 }
 
 /// How much of what the velocities ask of the constraints is left, in m/s^2 of each m/s^2 asked: about 1 where there is
-/// no motion, about 0 where it can go on. A direction that is constrained by less than the square root of the
-/// regularisation counts as not constrained: what is asked along it is left.
+/// no motion, about 0 where it can go on. Masses do not tell which: they are taken as equal. A direction that is
+/// constrained by less than the square root of the regularisation counts as not constrained: what is asked along it is
+/// left.
 double ConstraintSolver::contradiction(const VectorX& state) {
   factorize(state);
   if (isRegular_) return 0;
+  assembleWithEqualMasses();
   factor_->factorize(kJammedRegularisation);
   forEachRow([this](const ConstraintBlock& block, std::size_t row, Eigen::Index index) {
     multipliers_[index] = -block.velocityProduct[row];

@@ -85,6 +85,8 @@ class ConstraintSolver {
   void analyze();
   void findBlocks(const VectorX& state, const std::vector<BodyFrame>& frames);
   void assemble();
+  void assembleWithEqualMasses();
+  bool areRowsIndependent();
   void opposeVelocities(const VectorX& state);
   void opposeAccelerations(const VectorX& derivative);
   void ignoreEmptyRows();
@@ -93,7 +95,7 @@ class ConstraintSolver {
   void addResponses(Add&& add) const;
   template <class Visit>
   void forEachRow(const Visit& visit) const;
-  double displace(VectorX& state);
+  double displace(bool inSum, VectorX& state);
   bool holdWithin(double error, double roundings) const;
   double contradiction(const VectorX& state);
 
@@ -103,11 +105,12 @@ class ConstraintSolver {
   std::vector<BodyFrame> frames_;
   std::vector<ConstraintBlock> blocks_;  // of the constraints that are not excluded
   std::vector<BlockResponse> responses_;
+  std::vector<BlockResponse> ownResponses_;    // scratch
   std::vector<std::array<int, 3>> structure_;  // bodies and rows of each, when the couplings were found
   std::vector<Coupling> couplings_;            // in the order of their places in factor_
   std::unique_ptr<BlockLdlt> factor_;          // none before factorize
   bool isRegular_ = true;
-  VectorX multipliers_, rightHandSide_, residual_, undisplaced_;
+  VectorX multipliers_, rightHandSide_, residual_, undisplaced_, sum_;
 };
 
 }  // namespace cradle

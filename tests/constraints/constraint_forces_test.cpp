@@ -156,6 +156,63 @@ TEST(ConstraintForces, HoldLightBodiesBetweenHeavyOnes) {
   }
 }
 
+/// A light body that a hinge and its stop hold, and a body of 1 kg that turns about it by a second hinge along z, at
+/// the speed `spin` (rad/s).
+struct HeldLightBody {
+  std::vector<RigidBody> bodies;
+  VectorX state = VectorX::Zero(stateSize(2));
+  Constraints constraints;
+  Vec3 pivot = Vec3(0.5, 0, 0.1), arm = Vec3(0.4, 0.3, -0.1);  // m: of the second hinge; from there to body 1
+
+  HeldLightBody(double lightness, double spin) {
+    const Mat3 inertia = Vec3(0.001, 0.02, 0.025).asDiagonal();
+    bodies = {makeRigidBody({lightness, Vec3::Zero(), lightness * inertia}),
+              makeRigidBody({1, Vec3::Zero(), Vec3(0.1, 0.2, 0.25).asDiagonal().toDenseMatrix()})};
+    for (const int body : {0, 1}) setOrientation(state, body, Quat::Identity());
+    centerOfMass(state, 1) = pivot + arm;
+    angularVelocity(state, 1) = spin * Vec3::UnitZ();
+    linearVelocity(state, 1) = spin * Vec3::UnitZ().cross(arm);
+    const HingeConstraint hinge{Vec3(2, 1, 2) / 3, {Vec3(2, -2, -1) / 3, Vec3(1, 2, -2) / 3}};
+    const Vec3 wall(-0.3, 0.1, 0.2);
+    const Attachment light{0, wall}, world{kFixed, wall};
+    constraints.push_back({light, world, hinge});
+    constraints.push_back({light, world, JointCoordinate{true, hinge.axisA, hinge.acrossB[0], hinge.acrossB[0]}});
+    constraints.push_back({{1, -arm}, {0, pivot}, HingeConstraint{Vec3::UnitZ(), {Vec3::UnitX(), Vec3::UnitY()}}});
+  }
+};
+
+// The forces on the light body are those that move the heavy one, and cancel. What they would move it by one after the
+// other, and the small part that is left of the heavy body in J M^-1 J^T, is no contradiction of the joints: errors go
+// to rounding, and the light body stays where its joint and stop hold it.
+TEST(ConstraintForces, ProjectAHeavyBodyTiedToALightOne) {
+  for (const double lightness : {1e-2, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+    HeldLightBody held(lightness, 3);
+    centerOfMass(held.state, 1) += 1e-6 * Vec3(1, 2, 3);
+    turnBody(held.state, 1, 1e-6 * Vec3(3, -1, 2));
+    ConstraintSolver solver(held.constraints, held.bodies);
+    EXPECT_GT(solver.project(held.state), 1e-7);
+    EXPECT_LT(solver.largestError(), 1e-14) << lightness;
+    EXPECT_FALSE(solver.leaveNoMotion(held.state, 0)) << lightness;
+    EXPECT_LT(centerOfMass(held.state, 0).norm(), 1e-14) << lightness;
+  }
+}
+
+// Of a physical pendulum: a'' = -m g r_x / (I + m r^2), whatever holds its pivot. By the light body's arms and inertia,
+// W has entries of 1e3 / lightness; they are rounded, and the force that holds the pivot is 10 N: 1e-12 / lightness.
+TEST(ConstraintForces, LetAHeavyBodySwingOnALightOneThatIsHeld) {
+  for (const double lightness : {1e-2, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+    HeldLightBody held(lightness, 3);
+    ConstraintSolver solver(held.constraints, held.bodies);
+    solver.factorize(held.state);
+    VectorX derivative = VectorX::Zero(held.state.size());
+    for (const int body : {0, 1}) linearVelocity(derivative, body) = Vec3(0, -9.81, 0);
+    solver.constrainAccelerations(derivative);
+    const double acceleration = -9.81 * held.arm.x() / (0.25 + held.arm.head<2>().squaredNorm());
+    EXPECT_NEAR(angularVelocity(derivative, 1).z(), acceleration, 1e-12 / lightness) << lightness;
+    EXPECT_LT(linearVelocity(derivative, 0).norm(), 1e-12 / lightness) << lightness;
+  }
+}
+
 // Bodies that nothing turns: of a hinge, the rows of rotations ask for what they do not get. The others are kept all
 // the same, whatever is asked of those, but for rounding times the ratio of the masses.
 TEST(ConstraintForces, KeepPointsOfBodiesThatNothingTurns) {

@@ -236,6 +236,42 @@ TEST(JointLimits, LightestBodiesStayAtTheirStops) {
   }
 }
 
+/// A light block on a slider that stops it carries the pivot of a body of 1 kg, which goes with it at v = 1 m/s, its
+/// centre of mass r across the way. The stop throws the pivot back with e v, whatever the block weighs. About the pivot
+/// the body gets the angular velocity m (1 + e) v r / (I + m r^2).
+TEST(JointLimits, LightBlockStopsThePivotOfAHeavyBody) {
+  const double arm = 0.3, inertia = (0.04 + 0.01) / 12;
+  for (const double restitution : {0.0, 0.5, 1.0})
+    for (const double lightness : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
+      const Trajectory moved = runStopped(
+          0.6, 1e-8,
+          fmt::format(R"({{"name": "block", "mass": {}, "shape": {{"box": {{"size": [0.1, 0.1, 0.1]}}}},
+        "linearVelocity": [1, 0, 0], "collision": "none"}},
+        {{"name": "body", "mass": 1, "shape": {{"box": {{"size": [0.1, 0.2, 0.1]}}}}, "position": [0, -0.3, 0],
+        "linearVelocity": [1, 0, 0], "collision": "none"}})",
+                      lightness),
+          fmt::format(R"("gravity": [0, 0, 0], "sliders": [{{"bodyA": "block", "anchorB": [0, 0, 0], "axis": [1, 0, 0],
+        "limits": {{"upper": 0.3, "restitution": {}}}}}],
+        "hinges": [{{"bodyA": "body", "anchorA": [0, 0.3, 0], "bodyB": "block", "anchorB": [0, 0, 0]}}],)",
+                      restitution));
+      const std::string which = fmt::format("restitution {}, {} kg", restitution, lightness);
+      const double spin = (1 + restitution) * arm / (inertia + arm * arm);
+      const double pivot = -restitution, centre = pivot + spin * arm;  // m/s, along the slider, in the instant after
+      EXPECT_NEAR(moved.frames.back().energy.impact,
+                  0.5 * (1 + lightness) - 0.5 * (lightness * pivot * pivot + centre * centre + inertia * spin * spin),
+                  1e-8)
+          << which;
+      if (restitution == 0) {  // about the pivot, which the body presses against the stop for half a turn
+        for (const Frame& frame : moved.frames) {
+          if (frame.time < 0.3 + 1e-9) continue;
+          EXPECT_NEAR(frame.states[0].position.x(), 0.3, 1e-8) << which;
+          EXPECT_NEAR(frame.states[1].angularVelocity.z(), spin, 1e-7) << which << " " << frame.time;
+        }
+      }
+      expectLedger(moved, 1e-9, 1e-6);
+    }
+}
+
 /// A box at the stop of a level slider on an arm that falls along a slope until that stops it: nothing presses the box
 /// against its stop, and nothing takes it away, but for rounding, which makes no events.
 TEST(JointLimits, StopThatNothingLoadsIsNoEvent) {
