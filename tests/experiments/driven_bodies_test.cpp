@@ -393,6 +393,37 @@ TEST(DrivenBodies, RodThatLeavesNoRoomEndsTheRun) {
   }
 }
 
+/// Likewise where it presses a bar against a block by the stop of a hinge. It takes the bar along from 0.1 rad on, and
+/// the bar's corner (1, 0.05) m comes to the block's lower side at y = 0.4 m at an angle a with sin a + 0.05 cos a =
+/// 0.4.
+TEST(DrivenBodies, StopThatLeavesNoRoomEndsTheRun) {
+  const double met = 0.1 + std::asin(0.4 / std::hypot(1, 0.05)) - std::atan(0.05);
+  for (const double friction : {0.0, 0.4})
+    for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+      const std::string text = fmt::format(R"("duration": 2, "accuracy": {}, "gravity": [0, 0, 0],
+      "materials": {{"m": {{"staticFriction": {}, "dynamicFriction": {}}}}}, "bodies": [
+      {{"name": "hub", "shape": {{"sphere": {{"radius": 0.1}}}}, "motion": "driven", "collision": "none",
+        "angularVelocity": [0, 0, 1]}},
+      {{"name": "bar", "material": "m", "mass": 10, "shape": {{"box": {{"size": [1, 0.1, 0.1]}}}},
+        "position": [0.5, 0, 0]}},
+      {{"name": "block", "material": "m", "shape": {{"box": {{"size": [0.2, 0.2, 0.2]}}}}, "motion": "static",
+        "position": [0.9, 0.5, 0]}}],
+      "hinges": [{{"bodyA": "bar", "bodyB": "hub", "anchorA": [-0.5, 0, 0], "anchorB": [0, 0, 0],
+        "limits": {{"lower": -0.1}}}}])",
+                                           accuracy, friction, friction);
+      try {
+        simulate(sceneWith(text));
+        ADD_FAILURE() << friction << ' ' << accuracy;
+      } catch (const Error& error) {
+        const std::string expected = fmt::format("at {:.4f}", met);
+        EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("\"bar\" is pressed into \"block\": what is driven leaves no room"),
+                  std::string::npos)
+            << error.what();
+      }
+    }
+}
+
 /// A box hangs on a rope from a hand that goes to another place and stops: the rope is never too long.
 TEST(DrivenBodies, HandCarriesABodyOnARope) {
   const Trajectory moved =

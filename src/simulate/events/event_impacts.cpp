@@ -190,7 +190,7 @@ double EventImpacts::resolveIsland(const DisjointSets& islands, int island, cons
     if (isIn(rope.contact)) impacts.push_back(rope);
   const VectorX approach = island_.state;
   const double zenoTime = resolveImpact(impacts, still);
-  requireRoom(approach, {impacts.begin(), impacts.begin() + std::ssize(contacts)});
+  requireRoom(approach, impacts, contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i)
     addImpulse(contacts[i], impacts[i].contact.normal.dot(impacts[i].impulse), impulses);
   std::size_t next = contacts.size();
@@ -259,9 +259,11 @@ bool EventImpacts::resolveByThoseThatClose(std::vector<ImpactContact>& impacts, 
   return false;
 }
 
-/// `impacts` are those of contacts alone. Driven bodies that come together over what they touch leave it no velocity
-/// with which all contacts open. Throws Error(unstable) then.
-void EventImpacts::requireRoom(const VectorX& approach, const std::vector<ImpactContact>& impacts) const {
+/// Driven bodies that come together over what they touch, or that press it against others by stops and ropes, leave it
+/// no velocity with which all contacts open and all limits are kept. Throws Error(unstable) then. Behind the contacts
+/// of `impacts`, one at least, stand those of limits.
+void EventImpacts::requireRoom(const VectorX& approach, const std::vector<ImpactContact>& impacts,
+                               std::size_t contacts) const {
   if (island_.assembly.mechanism.driven.empty()) return;
   double fastest = 0, led = 0;  // m/s
   for (const ImpactContact& impact : impacts) {
@@ -272,9 +274,9 @@ void EventImpacts::requireRoom(const VectorX& approach, const std::vector<Impact
   }
   if (led < kMinClosingRatio * fastest) return;  // faults of others' impacts are none of theirs
   const double closing = std::max(kMinClosingRatio * fastest, tolerances_.minOpeningSpeed(tolerances_.scales.size));
-  for (const ImpactContact& impact : impacts)
-    if (openingSpeed(impact.contact, island_.state) < -closing && impact.contact.separation < tolerances_.touch)
-      island_.failAtNoRoom(impact.contact);
+  for (std::size_t i = 0; i < impacts.size(); ++i)
+    if (openingSpeed(impacts[i].contact, island_.state) < -closing && impacts[i].contact.separation < tolerances_.touch)
+      island_.failAtNoRoom(impacts[i < contacts ? i : 0].contact);
 }
 
 /// Gives contacts whose rebound is too low to be seen no rebound: their bounces accumulate at the Zeno time 2 v / (a (1

@@ -59,7 +59,7 @@ class EventImpacts {
   double resolveImpact(std::vector<ImpactContact>& impacts, double still);
   bool resolveByThoseThatClose(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, double still,
                                ImpactFaults& faults);
-  void requireRoom(const VectorX& approach, const std::vector<ImpactContact>& impacts) const;
+  void requireRoom(const VectorX& approach, const std::vector<ImpactContact>& impacts, std::size_t contacts) const;
   double endZenoSequence(const VectorX& approach, std::vector<ImpactContact>& impacts);
 
   IslandState& island_;
