@@ -32,7 +32,7 @@ FRAMES = {  # scene: frames that are drawn; states are kept for these too
     "sliding_blocks": (0, 75, 145),
     "spinning_handle": (0, 200, 400),
     "gimbal_lock": (0, 50, 200),
-    "dice": (0, 20, 45, 144),
+    "dice": (0, 20, 45, 108),
     "orientation_drift": (30, 400, 660),
     "overlap_by_mass": (30, 300, 600),
     "gears_fall": (0, 30, 60, 170),
