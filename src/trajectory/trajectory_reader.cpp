@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <string_view>
 
@@ -34,7 +35,7 @@ constexpr const char* kMaterialsOfMesh =
     "FROM mesh, json_each(mesh.material) WHERE mesh.id = ?";
 constexpr const char* kTableNames = "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')";
 constexpr const char* kJointTableNames = "('joint', 'joint_state')";  // which earlier versions did not write
-constexpr const char* kTextureTableName = "('texture')";              // neither
+constexpr const char* kTextureTableNames = "('texture', 'texture_coordinates')";  // only where there are textures
 
 /// The first bytes of a file, or all; empty if it cannot be read.
 std::string fileHeaderOf(const std::string& path) {
@@ -74,7 +75,7 @@ void requireTrajectory(Database& database, const std::string& path) {
   if (!isOurs) throw Error(ErrorKind::usage, path, "is a SQLite database, but not a trajectory of cradle");
   requireStored(database, kTableNames);
   requireStored(database, kJointTableNames);
-  requireStored(database, kTextureTableName);
+  requireStored(database, kTextureTableNames);
   const std::int64_t version = oneInteger(database, "PRAGMA user_version");
   if (version != kSchemaVersion)
     throw Error(
@@ -97,6 +98,15 @@ Vec3f colorFromHex(const std::string& text, const Database& database) {
   if (text.size() != 7 || std::sscanf(text.c_str(), "#%2x%2x%2x", &red, &green, &blue) != 3)
     database.failDamaged("a colour of a mesh is not #rrggbb");
   return Vec3f(static_cast<float>(red), static_cast<float>(green), static_cast<float>(blue)) / 255.0f;
+}
+
+/// Texture coordinates by mesh, of those that have any.
+std::map<std::int64_t, std::vector<Vec2f>> readCoordinates(Database& database) {
+  std::map<std::int64_t, std::vector<Vec2f>> coordinates;
+  if (countTables(database, kTextureTableNames) < 2) return coordinates;
+  Statement query = database.prepare("SELECT mesh, coordinates FROM texture_coordinates");
+  while (query.step()) coordinates[query.integer(0)] = arrayOf<Vec2f>(query, 1, database);
+  return coordinates;
 }
 
 /// The texture that a row names, or none.
@@ -186,15 +196,10 @@ int bodyOrWorldAt(const Statement& row, int column, const TrajectoryHeader& head
   return row.isNull(column) ? -1 : bodyAt(row, column, header, database, who);
 }
 
-/// Earlier versions wrote fewer columns.
-bool hasColumn(Database& database, const char* table, const char* column) {
-  return oneInteger(database,
-                    fmt::format("SELECT count(*) FROM pragma_table_info('{}') WHERE name = '{}'", table, column)) == 1;
-}
-
 /// Earlier versions did not write the causes of what was dissipated.
 std::string energyQuery(Database& database) {
-  const bool hasCauses = hasColumn(database, "energy", "numerical");
+  const bool hasCauses =
+      oneInteger(database, "SELECT count(*) FROM pragma_table_info('energy') WHERE name = 'numerical'") == 1;
   return fmt::format(
       "SELECT kinetic, potential, dissipated, work, px, py, pz, lx, ly, lz, {} FROM energy WHERE frame = ?",
       hasCauses ? "impact, friction, damping, numerical" : "NULL, NULL, NULL, NULL");
@@ -277,7 +282,7 @@ void TrajectoryReader::readMeta() {
 
 void TrajectoryReader::readTextures() {
   Database& database = *session_->database;
-  if (countTables(database, kTextureTableName) == 0) return;
+  if (countTables(database, kTextureTableNames) < 2) return;
   Statement query = database.prepare("SELECT id, name, image FROM texture ORDER BY id");
   while (query.step()) {
     if (query.integer(0) != std::ssize(header_.textures)) database.failDamaged("a texture is missing");
@@ -289,11 +294,9 @@ void TrajectoryReader::readTextures() {
 
 void TrajectoryReader::readMeshes() {
   Database& database = *session_->database;
-  const bool hasCoordinates = hasColumn(database, "mesh", "textureCoordinates");
-  Statement query =
-      database.prepare(fmt::format("SELECT id, name, vertices, normals, triangles, {} FROM mesh ORDER BY id",
-                                   hasCoordinates ? "textureCoordinates" : "NULL"));
+  Statement query = database.prepare("SELECT id, name, vertices, normals, triangles FROM mesh ORDER BY id");
   Statement materials = database.prepare(kMaterialsOfMesh);
+  const auto coordinates = readCoordinates(database);
   while (query.step()) {
     if (query.integer(0) != static_cast<std::int64_t>(header_.meshes.size())) database.failDamaged("a mesh is missing");
     Model model;
@@ -301,7 +304,8 @@ void TrajectoryReader::readMeshes() {
     model.drawn.vertices = arrayOf<Vec3>(query, 2, database);
     model.drawn.normals = arrayOf<Vec3f>(query, 3, database);
     model.drawn.triangles = arrayOf<Triangle>(query, 4, database);
-    if (!query.isNull(5)) model.drawn.textureCoordinates = arrayOf<Vec2f>(query, 5, database);
+    if (const auto places = coordinates.find(query.integer(0)); places != coordinates.end())
+      model.drawn.textureCoordinates = places->second;
     model.drawn.materials =
         readMaterials(materials, database, query.integer(0), model.drawn.triangles.size(), header_.textures);
     requireConsistent(model.drawn, database);

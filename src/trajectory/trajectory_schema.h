@@ -15,10 +15,8 @@ CREATE TABLE mesh (id INTEGER PRIMARY KEY, name TEXT,
   vertices BLOB,   -- m, body's frame; 3 float64 each, little-endian
   normals BLOB,    -- unit, one per vertex; 3 float32
   triangles BLOB,  -- vertex numbers, counter-clockwise from outside; 3 uint32
-  material TEXT,   -- JSON: name, baseColor, firstTriangle, triangleCount, texture of each range of triangles
-  textureCoordinates BLOB);  -- one pair per vertex, from the left and from below, 1 across; 2 float32; or null
-CREATE TABLE texture (id INTEGER PRIMARY KEY, name TEXT,
-  image BLOB);     -- a PNG or JPEG file; first those of the scene's materials
+  material TEXT);  -- JSON: name, baseColor, firstTriangle, triangleCount, and texture if it has one, of each range of
+                   -- triangles
 CREATE TABLE body (id INTEGER PRIMARY KEY, name TEXT UNIQUE,
   motion TEXT,              -- dynamic, static or driven
   mesh INTEGER,             -- id, or null if it has a shape
@@ -51,6 +49,14 @@ CREATE TABLE energy (frame INTEGER PRIMARY KEY, kinetic, potential, dissipated, 
   lx, ly, lz,   -- kg m^2/s, about the world origin
   impact, friction, damping,  -- J, parts of dissipated
   numerical);                 -- J, lost by errors of the method
+)sql";
+
+/// Those of trajectories with textures.
+constexpr const char* kTextureTables = R"sql(
+CREATE TABLE texture (id INTEGER PRIMARY KEY, name TEXT,
+  image BLOB);        -- a PNG or JPEG file; first those of the scene's materials
+CREATE TABLE texture_coordinates (mesh INTEGER PRIMARY KEY,
+  coordinates BLOB);  -- one pair per vertex, from the left and from below, 1 across; 2 float32
 )sql";
 
 }  // namespace cradle

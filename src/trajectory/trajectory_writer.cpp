@@ -54,7 +54,9 @@ std::vector<SharedTexture> texturesOf(const TrajectoryHeader& header) {
   return textures;
 }
 
-void insertTextures(Database& database, const std::vector<SharedTexture>& textures) {
+void insertTextures(Database& database, const std::vector<SharedTexture>& textures, const std::vector<Model>& meshes) {
+  if (textures.empty()) return;
+  database.execute(kTextureTables);
   Statement insert = database.prepare("INSERT INTO texture VALUES (?, ?, ?)");
   for (std::size_t id = 0; id < textures.size(); ++id) {
     insert.bind(1, id);
@@ -62,12 +64,20 @@ void insertTextures(Database& database, const std::vector<SharedTexture>& textur
     insert.bind(3, std::as_bytes(std::span(textures[id]->bytes)));
     insert.run();
   }
+  Statement place = database.prepare("INSERT INTO texture_coordinates VALUES (?, ?)");
+  for (std::size_t id = 0; id < meshes.size(); ++id) {
+    if (meshes[id].drawn.textureCoordinates.empty()) continue;
+    place.bind(1, id);
+    place.bind(2, std::as_bytes(std::span(meshes[id].drawn.textureCoordinates)));
+    place.run();
+  }
 }
 
 std::string materialsAsJson(const std::vector<ModelMaterial>& materials, const std::vector<SharedTexture>& textures,
                             Database& database) {
-  Statement object = database.prepare(
-      "SELECT json_object('name', ?, 'baseColor', ?, 'firstTriangle', ?, 'triangleCount', ?, 'texture', ?)");
+  Statement object = database.prepare(  // a patch with null leaves the key out
+      "SELECT json_patch(json_object('name', ?, 'baseColor', ?, 'firstTriangle', ?, 'triangleCount', ?), "
+      "json_object('texture', ?))");
   std::string json;
   for (const ModelMaterial& material : materials) {
     object.bind(1, material.name);
@@ -92,7 +102,7 @@ void insertMeta(Database& database, const std::string& key, const auto& value) {
 }
 
 void insertMeshes(Database& database, const std::vector<Model>& meshes, const std::vector<SharedTexture>& textures) {
-  Statement insert = database.prepare("INSERT INTO mesh VALUES (?, ?, ?, ?, ?, ?, ?)");
+  Statement insert = database.prepare("INSERT INTO mesh VALUES (?, ?, ?, ?, ?, ?)");
   for (std::size_t id = 0; id < meshes.size(); ++id) {
     const DrawnMesh& drawn = meshes[id].drawn;
     CRADLE_CHECK(drawn.normals.size() == drawn.vertices.size());
@@ -102,10 +112,6 @@ void insertMeshes(Database& database, const std::vector<Model>& meshes, const st
     insert.bind(4, std::as_bytes(std::span(drawn.normals)));
     insert.bind(5, std::as_bytes(std::span(drawn.triangles)));
     insert.bind(6, materialsAsJson(drawn.materials, textures, database));
-    if (drawn.textureCoordinates.empty())
-      insert.bindNull(7);
-    else
-      insert.bind(7, std::as_bytes(std::span(drawn.textureCoordinates)));
     insert.run();
   }
 }
@@ -162,7 +168,7 @@ void insertHeader(Database& database, const TrajectoryHeader& header) {
   insertMeta(database, "accuracy", header.accuracy);
   insertMeta(database, "method", header.method);
   const std::vector<SharedTexture> textures = texturesOf(header);
-  insertTextures(database, textures);
+  insertTextures(database, textures, header.meshes);
   insertMeshes(database, header.meshes, textures);
   insertBodies(database, header);
   insertJoints(database, header);

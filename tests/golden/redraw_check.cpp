@@ -43,7 +43,7 @@ bool check(const std::string& trajectory, const std::filesystem::path& folder, c
       const Image picture = whole.render(frame, camera.at(frame));
       if (number == first) {
         Image captioned = picture;
-        drawCaptions(source.scene(), frame, {camera.at(frame), kWidth, kHeight}, captioned);
+        drawCaptions(source.scene(), frame, {camera.at(frame), kWidth, kHeight}, {}, captioned);
         writePng(captioned, (folder / fmt::format("frame_{:06}.png", number)).string());
       }
       const long different = differingPixels(changed, picture);

@@ -252,6 +252,23 @@ TEST_F(DamagedTrajectory, WithWrongMeshesIsRefused) {
   expectRefused("UPDATE mesh SET material = json_set(material, '$[1].triangleCount', 9223372036854775807)", "follow");
 }
 
+TEST_F(DamagedTrajectory, WithWrongTexturesIsRefused) {
+  const std::string tables =
+      "CREATE TABLE texture (id INTEGER PRIMARY KEY, name TEXT, image BLOB);"
+      "CREATE TABLE texture_coordinates (mesh INTEGER PRIMARY KEY, coordinates BLOB);";
+  const std::string named = "UPDATE mesh SET material = json_set(material, '$[0].texture', 0);";
+  const std::string whole = "INSERT INTO texture VALUES (0, 'a.png', x'00');";
+  expectRefused(named, "a mesh has a texture that is not there");
+  expectRefused(tables + named, "a mesh has a texture that is not there");
+  expectRefused(tables + "INSERT INTO texture VALUES (1, 'a.png', x'00')", "a texture is missing");
+  expectRefused(tables + whole + "INSERT INTO texture_coordinates VALUES (0, zeroblob(8))",
+                "not one pair of texture coordinates a vertex");
+  expectRefused(tables + whole + "INSERT INTO texture_coordinates VALUES (0, zeroblob(9))", "ends in mid-element");
+  const std::string notFinite(2 * 8 * sampleModel().drawn.vertices.size(), 'f');  // hexadecimal digits
+  expectRefused(tables + whole + "INSERT INTO texture_coordinates VALUES (0, x'" + notFinite + "')",
+                "texture coordinates that are not finite");
+}
+
 TEST_F(DamagedTrajectory, CutAnywhereIsRefused) {
   writeSample(path_, 200);
   const std::string whole = contentOf(path_);

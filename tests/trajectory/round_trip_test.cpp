@@ -38,6 +38,35 @@ TEST(TrajectoryFile, KeepsTheHeader) {
   }
 }
 
+/// The sample, with a texture on the first range of its mesh, and another that a material of the scene has.
+TrajectoryHeader texturedHeader() {
+  TrajectoryHeader header = sampleHeader();
+  const auto texture = std::make_shared<const Texture>(Texture{"brass.png", std::string("\x89PNG\0 and more", 14)});
+  header.textures = {std::make_shared<const Texture>(Texture{"../wood.jpg", "\xff\xd8\xff"})};
+  DrawnMesh& drawn = header.meshes[0].drawn;
+  drawn.materials[0].texture = texture;
+  for (std::size_t i = 0; i < drawn.vertices.size(); ++i)
+    drawn.textureCoordinates.push_back({0.1f * static_cast<float>(i), -3});
+  return header;
+}
+
+TEST(TrajectoryFile, KeepsTexturesThoseOfTheSceneFirst) {
+  const TemporaryFolder folder;
+  const TrajectoryHeader expected = texturedHeader();
+  writeSample(folder.file("a.sqlite"), 1, expected);
+  const TrajectoryReader reader(folder.file("a.sqlite"));
+  const TrajectoryHeader& header = reader.header();
+  ASSERT_EQ(header.textures.size(), 2u);
+  EXPECT_EQ(header.textures[0]->name, "../wood.jpg");
+  EXPECT_EQ(header.textures[0]->bytes, expected.textures[0]->bytes);
+  const std::vector<ModelMaterial>& materials = header.meshes.at(0).drawn.materials;
+  EXPECT_EQ(materials.at(0).texture, header.textures[1]);
+  EXPECT_EQ(header.textures[1]->name, "brass.png");
+  EXPECT_EQ(header.textures[1]->bytes, expected.meshes[0].drawn.materials[0].texture->bytes);
+  EXPECT_EQ(materials.at(1).texture, nullptr);
+  EXPECT_EQ(header.meshes[0].drawn.textureCoordinates, expected.meshes[0].drawn.textureCoordinates);
+}
+
 TEST(TrajectoryFile, KeepsMeshesAndWeldsTheSolidAgain) {
   const TemporaryFolder folder;
   writeSample(folder.file("a.sqlite"), 1);
