@@ -333,8 +333,7 @@ int run(int argc, char** argv) {
   CLI::App app("Cradle: rigid-body physics from a scene file, and pictures of it.", "cradle");
   CommandLine line;
   app.set_version_flag("--version", "cradle " CRADLE_VERSION);
-  app.add_flag("-q,--quiet", line.quiet,
-               "no progress on stderr, and at the accuracy \"visual\" no warnings about accuracy");
+  app.add_flag("-q,--quiet", line.quiet, "no progress on stderr");
   app.require_subcommand(1);
   app.fallthrough();
   app.footer(

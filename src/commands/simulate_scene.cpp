@@ -72,7 +72,6 @@ void apply(const SceneOptions& options, Scene& scene) {
   if (options.accuracy) {
     scene.accuracy = accuracyOf(*options.accuracy);
     scene.namesAccuracy = true;
-    scene.namesVisual = *options.accuracy == kVisualWord;
   }
   if (options.duration) scene.duration = requireIn(kDurations, "--duration", *options.duration);
   if (options.method) {
@@ -144,10 +143,6 @@ void warn(const std::string& warning) {
   show(stderr, "warning: {}\n", printableLine(warning));
 }
 
-bool warnsOfShortfalls(const Scene& scene, bool quiet) {
-  return !(quiet && scene.namesVisual);
-}
-
 Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
   LoadedScene loaded = loadScene(path, options.assetRoot);
   warnOfAll(loaded.warnings);
@@ -175,8 +170,7 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, St
                             [&](const PromiseEnd& end) {
                               if (watch) watch->note(end);
                             },
-                            [&](double time) { progress.showTime(time); },
-                            warnsOfShortfalls(scene, quiet)};
+                            [&](double time) { progress.showTime(time); }};
   const RunCost cost = simulate(scene, world, sink);
   if (watch) watch->finish();
   writer.finish(cost);

@@ -40,10 +40,6 @@ Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options);
 /// Tells a warning on stderr.
 void warn(const std::string& warning);
 
-/// Whether a run warns of what is less exact than asked, and of corrections. Who asks for a look alone, and for quiet,
-/// finds them in the trajectory.
-bool warnsOfShortfalls(const Scene& scene, bool quiet);
-
 /// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr. `world` is at its
 /// start; `watch` may be null.
 void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet);

@@ -145,7 +145,7 @@ void TrajectorySource::simulateBeside(std::function<void(const std::string&)> wa
   if (reader_) return;
   warn_ = std::move(warn);
   reached_ = std::move(reached);
-  stream_.emplace(scene_, warnsOfShortfalls(scene_, quiet_));
+  stream_.emplace(scene_);
 }
 
 Frame TrajectorySource::frameAt(long number) {

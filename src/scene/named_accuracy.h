@@ -11,6 +11,5 @@ constexpr double kFinestAccuracy = 1e-12, kCoarsestAccuracy = 1e-2;
 /// The accuracy that a word stands for, and all words for messages; nothing for a word that is none.
 std::optional<double> accuracyNamed(const std::string& word);
 extern const char* const kAccuracyWords;
-constexpr const char* kVisualWord = "visual";  // of an accuracy that is to be looked at alone
 
 }  // namespace cradle

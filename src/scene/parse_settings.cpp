@@ -111,8 +111,6 @@ void parseSettings(ObjectReader& root, Scene& scene) {
     scene.accuracy = parseAccuracy(*field, faults);
     scene.accuracyWhere = faults.where(field->place(), field->pointer);
     scene.namesAccuracy = true;
-    const auto* word = std::get_if<std::string>(&field->value->content);
-    scene.namesVisual = word != nullptr && *word == kVisualWord;
   }
   if (const auto field = root.find("method")) scene.method = parseMethod(*field, faults);
   if (const auto field = root.find("output")) scene.output = parseOutput(*field, faults);

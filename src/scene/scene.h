@@ -262,7 +262,6 @@ struct Scene {
   Vec3 gravity = Vec3(0, -9.81, 0);  // m/s^2
   double accuracy = 1e-6;            // 1e-12..1e-2, bound on the local error
   bool namesAccuracy = false;
-  bool namesVisual = false;      // by the word "visual": a look is all that is asked for
   std::string accuracyWhere;     // the scene file itself if it does not name one
   std::optional<Method> method;  // unset: the program chooses
   Output output;

@@ -4,8 +4,7 @@
 
 namespace cradle {
 
-FrameStream::FrameStream(const Scene& scene, bool warnsOfShortfalls)
-    : thread_([this, &scene, warnsOfShortfalls] { run(scene, warnsOfShortfalls); }) {}
+FrameStream::FrameStream(const Scene& scene) : thread_([this, &scene] { run(scene); }) {}
 
 FrameStream::~FrameStream() {
   {
@@ -16,7 +15,7 @@ FrameStream::~FrameStream() {
   thread_.join();
 }
 
-void FrameStream::run(const Scene& scene, bool warnsOfShortfalls) {
+void FrameStream::run(const Scene& scene) {
   try {
     const auto putPush = [this](const Event& event) {
       if (event.kind == EventKind::pushStart || event.kind == EventKind::pushMissed) put(event);
@@ -24,7 +23,6 @@ void FrameStream::run(const Scene& scene, bool warnsOfShortfalls) {
     SimulationSink sink{[this](const Frame& frame) { put(frame); }, putPush,
                         [this](const std::string& warning) { put(warning); }};
     sink.reached = [this](double time) { put(time); };
-    sink.warnsOfShortfalls = warnsOfShortfalls;
     simulate(scene, sink);
   } catch (const Closed&) {
   } catch (...) {

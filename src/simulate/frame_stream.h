@@ -20,8 +20,8 @@ class FrameStream {
  public:
   static constexpr std::size_t kFramesAhead = 16;  // a slow frame does not stop the drawing at once
 
-  /// Begins. `scene` must outlive this object; `warnsOfShortfalls` as in SimulationSink.
-  explicit FrameStream(const Scene& scene, bool warnsOfShortfalls = true);
+  /// Begins. `scene` must outlive this object.
+  explicit FrameStream(const Scene& scene);
 
   /// Ends the simulation, with the frame under way at the latest.
   ~FrameStream();
@@ -39,7 +39,7 @@ class FrameStream {
  private:
   using Item = std::variant<Frame, Event, double, std::string, std::exception_ptr>;  // the last three: s, warning, end
   struct Closed {};
-  void run(const Scene& scene, bool warnsOfShortfalls);
+  void run(const Scene& scene);
   void put(Item item);
   Item take();
 

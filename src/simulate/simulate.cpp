@@ -27,10 +27,8 @@ std::string shapeText(const Shape& shape) {
 }
 
 void tellOfPromises(World& run, const SimulationSink& sink) {
-  for (const PromiseEnd& end : run.takePromiseEnds()) {
+  for (const PromiseEnd& end : run.takePromiseEnds())
     if (sink.promiseEnd) sink.promiseEnd(end);
-    if (sink.warnsOfShortfalls) sink.warning(end.warning);
-  }
   for (const std::string& warning : run.takeWarnings()) sink.warning(warning);
 }
 
@@ -83,7 +81,7 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
     tellOfPromises(run, sink);
     for (const Correction& correction : run.takeCorrections()) {
       if (sink.correction) sink.correction(correction);
-      if (sink.warnsOfShortfalls) sink.warning(describe(correction, scene));
+      sink.warning(describe(correction, scene));
     }
     loss.add(frame);
     sink.frame(frame);

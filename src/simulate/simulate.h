@@ -20,7 +20,6 @@ struct SimulationSink {
   std::function<void(const Correction&)> correction = {};  // the first of each kind, before its warning; may be none
   std::function<void(const PromiseEnd&)> promiseEnd = {};  // of each island, before the warning; may be none
   std::function<void(double time)> reached = {};  // s, inside a frame that takes seconds, once a second; may be none
-  bool warnsOfShortfalls = true;                  // of ends of promises and of corrections
 };
 
 /// What a trajectory says before its first frame.

@@ -65,6 +65,7 @@ void World::notePromiseEnds() {
     if (known || !solver.promiseEnd()) return;
     known = solver.promiseEnd();
     newEnds_.push_back(*known);
+    warnings_.push_back(known->warning);
   });
 }
 
@@ -206,7 +207,7 @@ std::vector<Event> World::takeEvents(double time) {
 }
 
 std::vector<std::string> World::takeWarnings() {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = std::exchange(warnings_, {});
   forEachSolver([&](auto& solver, std::size_t) {
     for (std::string& warning : solver.takeWarnings()) warnings.push_back(std::move(warning));
   });

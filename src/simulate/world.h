@@ -46,7 +46,7 @@ class World {
   /// Events up to `time` that were not taken before, in the order of time.
   std::vector<Event> takeEvents(double time);
 
-  /// Warnings since the last call, of other things than ends of promises.
+  /// Warnings since the last call.
   std::vector<std::string> takeWarnings();
 
   /// Corrections since the last call that were the first of their kind in the run, in the order of time.
@@ -87,6 +87,7 @@ class World {
   std::vector<std::size_t> islandOfSolver_, islandOfGroup_;  // of the plan
   std::vector<std::optional<PromiseEnd>> promiseEnds_;       // by island
   std::vector<PromiseEnd> newEnds_;                          // not yet taken
+  std::vector<std::string> warnings_;                        // not yet taken
   std::vector<FlyingIsland> flying_;
   std::vector<std::unique_ptr<HardSpheres>> spheres_;
   std::vector<std::unique_ptr<SoftSubsteps>> softIslands_;

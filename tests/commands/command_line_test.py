@@ -145,28 +145,6 @@ class Scenes(InTemporaryFolder):
         self.assertEqual(result.returncode, 0)
         self.assertRegex(result.stderr, r'^warning: .*s\.json:\d+:\d+ /pushes/0: the ray misses "ball" at 0\.05 s.*\n$')
 
-    def test_visual_runs_are_quiet_about_accuracy_if_asked(self):
-        """Cubes that slide on the ground give up what was promised: a warning, but of accuracies that are looked at alone."""
-        bodies = [{"name": "ground", "shape": {"plane": {}}, "motion": "static"}] + [
-            {"name": f"cube{i}", "shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "position": [0, 0.105 + 0.2 * i, 0], "linearVelocity": [1, 0, 0]}
-            for i in range(6)]
-        push = {"body": "cube0", "ray": {"origin": [0, 9, 5], "direction": [0, 0, -1]}, "force": [0, 0, -3], "start": 0.05, "duration": 0.02}
-        path = self.write("s.json", scene(duration=0.3, bodies=bodies, pushes=[push], camera={"position": [0, 1, 5]}))
-        misses, given_up = "the ray misses", "promised from"
-        for accuracy, quiet, told in (("visual", ["--quiet"], False), ("visual", [], True), ("1e-3", ["--quiet"], True)):
-            run = cradle("simulate", path, "-o", self.path("x.sqlite"), "--accuracy", accuracy, *quiet)
-            self.assertEqual(run.returncode, 0, run.stderr)
-            self.assertIn(misses, run.stderr)
-            self.assertEqual(given_up in run.stderr, told, (accuracy, quiet, run.stderr))
-            promise, = sqlite3.connect(self.path("x.sqlite")).execute("select value from meta where key = 'promise'").fetchone()
-            self.assertIn("given up at", promise)
-        visual = self.write("v.json", {**json.loads(content(path)), "accuracy": "visual"})
-        for quiet in ([], ["--quiet"]):
-            run = cradle("video", visual, "-o", self.path("f.gif"), *quiet)
-            self.assertEqual(run.returncode, 0, run.stderr)
-            self.assertIn(misses, run.stderr)
-            self.assertEqual(given_up in run.stderr, not quiet)
-
     def test_words_that_cannot_be_shown_are_told_with_their_place(self):
         captions = [{"text": "fine"}, {"text": "not \u6f22"}]
         path = self.write("s.json", scene(captions=captions, titleCard={"title": "Title", "subtitle": "\U0001f680"}))
