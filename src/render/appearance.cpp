@@ -298,7 +298,9 @@ Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPer
   appearance.meshes.push_back(makeWall(size));
   appearance.meshIsClosed.push_back(true);
   appearance.pushArrow = addArrow(view.longestArrow, appearance);
-  if (const double longest = longestMotorArrow(scene, appearance); longest > 0)
+  std::vector<Bounds> localBounds;
+  for (const BodyAppearance& body : appearance.bodies) localBounds.push_back(body.local);
+  if (const double longest = longestMotorArrow(scene, localBounds); longest > 0)
     appearance.motorArrow = addArrow(longest, appearance);
   return appearance;
 }

@@ -8,9 +8,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kHeadRadius = 0.085, kShaftRadius = 0.03;  // shares of the longest arrow
-constexpr int kFacets = 48;                                 // around a head
-constexpr int kSegments = 64;                               // of an arc
+constexpr double kShaftRadius = 0.03;  // share of the longest arrow
+constexpr int kFacets = 48;            // around a head
+constexpr int kSegments = 64;          // of an arc
 const Surface kSignalRed{Vec3f(0.82f, 0.09f, 0.015f), 0.0f, 0.45f};
 
 void appendHead(const Appearance& appearance, const ArrowLook& look, const RigidTransform& worldFromHead,
@@ -59,11 +59,15 @@ void appendArrow(const Appearance& appearance, const ArrowLook& look, const Vec3
       {(tail + headStart) / 2, direction, kShaftRadius * look.longest, (headStart - tail).norm(), kSignalRed});
 }
 
+Vec3 middleOfArc(const Vec3& axis) {
+  const Vec3 up = std::abs(axis.y()) < 0.9 ? Vec3::UnitY() : Vec3::UnitZ();
+  return (up - up.dot(axis) * axis).normalized();
+}
+
 /// From straight pieces that overlap, with a head where it ends.
 void appendArc(const Appearance& appearance, const ArrowLook& look, const Vec3& center, const Vec3& axis, double radius,
                double angle, DrawList& list) {
-  const Vec3 up = std::abs(axis.y()) < 0.9 ? Vec3::UnitY() : Vec3::UnitZ(),
-             top = (up - up.dot(axis) * axis).normalized();
+  const Vec3 top = middleOfArc(axis);
   const double head = kHeadLength * look.longest / radius, piece = (angle - head) / kSegments;
   const auto outwards = [&](double at) -> Vec3 { return rotationAbout(axis, at - angle / 2) * top; };
   const Vec3 pointing = axis.cross(outwards(angle - head / 2));

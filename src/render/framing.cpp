@@ -13,6 +13,7 @@
 #include "render/body_place.h"
 #include "render/camera.h"
 #include "render/camera_path.h"
+#include "render/motor_arrows.h"
 
 namespace cradle {
 namespace {
@@ -128,11 +129,20 @@ void Framing::includeMoving(const Solid& solid) {
   movingBounds_.extend(transformed(solid.local, solid.worldFromLocal));
 }
 
+void Framing::includeMotorArrows(const Frame& frame, const std::vector<RigidTransform>& places) {
+  for (const Vec3& point : outlineOfMotorArrows(scene_, localBounds_, frame, places)) {
+    const Solid solid{Bounds(Vec3::Zero(), Vec3::Zero()), 0, {Quat::Identity(), point}};
+    for (Candidate& candidate : candidates_) candidate.moving.include(reachOf(candidate, solid));
+    motorArrowBounds_.extend(point);
+  }
+}
+
 void Framing::add(const Frame& frame) {
   const auto places = placeBodies(scene_, frame);
   if (scene_.camera && !start_) start_ = CameraPath(scene_).next(frame.time, places);
   for (std::size_t i = 0; i < pushes_.size(); ++i)
     if (pushes_[i].isShownAt(frame.time)) arrowPlaces_.push_back({i, pushes_[i].pointAt(frame.time, places)});
+  if (!scene_.camera) includeMotorArrows(frame, places);
   for (const Solid& solid : solidsOf(places, true)) {
     includeMoving(solid);
     ++places_;
@@ -236,6 +246,7 @@ View Framing::view() const {
     lookFromScene(view);
   } else {
     includeArrows(view, shown);
+    view.bounds.extend(motorArrowBounds_);
     view.camera = automaticCamera(shown);
   }
   return view;

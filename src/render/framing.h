@@ -65,6 +65,7 @@ class Framing {
   static Reach emptyReach();
   static Reach reachOf(const Candidate& candidate, const Solid& solid);
   void includeMoving(const Solid& solid);
+  void includeMotorArrows(const Frame& frame, const std::vector<RigidTransform>& places);
   std::vector<Solid> solidsOf(const std::vector<RigidTransform>& places, bool areMoving) const;
   bool movesAlongZ() const;
   bool seesGround(const Candidate& candidate) const;
@@ -85,7 +86,7 @@ class Framing {
   std::vector<Bounds> localBounds_;  // of every body
   std::vector<Candidate> candidates_;
   std::optional<Camera> start_;  // that the scene names, in the first frame
-  Bounds movingBounds_;
+  Bounds movingBounds_, motorArrowBounds_;
   long places_ = 0;  // of bodies that move, over all frames
   Vec3 placeSum_ = Vec3::Zero(), placeSquareSum_ = Vec3::Zero();
 };

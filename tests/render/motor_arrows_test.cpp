@@ -7,6 +7,7 @@
 
 #include "math/rotation.h"
 #include "render/body_place.h"
+#include "render/camera.h"
 #include "render/scene_builder.h"
 
 namespace cradle {
@@ -94,6 +95,42 @@ TEST(MotorArrows, ArrowStandsAtTheSmallerBody) {
   const Vec3 tip = list.meshes[0].worldFromMesh.translation - Vec3(0, 1, 0);
   EXPECT_NEAR(std::hypot(tip.x(), tip.y()), 0.75 * 0.4, 1e-9);
   EXPECT_LT(tip.cross(list.meshes[0].worldFromMesh.rotation * Vec3::UnitY()).dot(scene.hinges[0].axis), 0);
+}
+
+/// A wheel inside of a case has its arcs in front of the case and behind it, a cart inside of a fixed sleeve its arrow
+/// beyond the sleeve's end.
+TEST(MotorArrows, StandOutsideOfWhatWouldHideThem) {
+  Scene scene = motorScene();
+  addBody(scene, Box{{2, 2, 2}}, {Quat::Identity(), {0, 1, 0}});
+  addBody(scene, Box{{4, 0.5, 0.5}}, {Quat::Identity(), {3, 1, 0}}, Motion::fixed);
+  scene.hinges[0].anchorB = {2, Vec3::Zero()};
+  const DrawList list = arrowsOf(scene, 5, 4);
+  ASSERT_EQ(list.meshes.size(), 3u);
+  EXPECT_GT(list.cylinders.size(), 100u);
+  for (const CylinderItem& piece : list.cylinders)
+    EXPECT_TRUE(std::abs(piece.center.z()) > 1 || piece.center.x() - piece.length / 2 > 5 - 1e-12)
+        << piece.center.transpose();
+}
+
+/// From where the program looks the arrows are in the picture, as the bodies alone would have them outside.
+TEST(MotorArrows, AreInThePictureThatTheProgramChooses) {
+  const Scene scene = motorScene();
+  Frame frame = startFrame(scene);
+  const auto farthestOut = [&](const View& view) {
+    DrawList list;
+    appendMotorArrows(scene, makeAppearance(scene, view, 100), frame, placeBodiesAtStart(scene), list);
+    double farthest = 0;
+    for (const MeshItem& head : list.meshes) {
+      const Eigen::Vector2d pixel = projectToPixel(view.camera, head.worldFromMesh.translation, 640, 360);
+      farthest = std::max({farthest, std::abs(pixel.x() / 320 - 1), std::abs(pixel.y() / 180 - 1)});
+    }
+    return farthest;
+  };
+  frame.joints = {{0, 0, 5}, {0, 0, 8}};
+  EXPECT_GT(farthestOut(viewOfStart(scene, 640, 360)), 1);  // its frame tells of no forces
+  Framing framing(scene, 640, 360);
+  framing.add(frame);
+  EXPECT_LT(farthestOut(framing.view()), 0.85);
 }
 
 /// Files of earlier versions tell nothing of joints.
