@@ -30,7 +30,7 @@ LIBRARY_UNITS = {
     "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file", "commands/plan_scene"],
     "CLI/": ["main.cpp"],
     "sqlite3.h": ["trajectory/database"],
-    "stb/": ["image/png", "image/font"],
+    "stb/": ["image/png", "image/font", "mesh/texture"],
     "libdeflate.h": ["image/png"],
     "GL/": ["render"],
     "GL/osmesa.h": ["render/contexts/osmesa"],
