@@ -213,6 +213,38 @@ TEST(ConstraintForces, LetAHeavyBodySwingOnALightOneThatIsHeld) {
   }
 }
 
+// A joint that is there twice contradicts nothing, however light the body is that it holds.
+TEST(ConstraintForces, FindNoContradictionInMasses) {
+  for (const double lightness : {1.0, 1e-2, 1e-4, 1e-6, 1e-8}) {
+    HeldLightBody held(lightness, 3);
+    held.constraints.push_back(held.constraints[0]);
+    centerOfMass(held.state, 1) += 1e-9 * Vec3(1, 2, 3);
+    ConstraintSolver solver(held.constraints, held.bodies);
+    solver.factorize(held.state);
+    EXPECT_FALSE(solver.leaveNoMotion(held.state, 0)) << lightness;
+  }
+}
+
+// Two bars of 1 m in line between fixed points that are 2 m and 1e-9 m apart: their knee would leave the line, and
+// nothing can turn it, whatever the bars weigh.
+TEST(ConstraintForces, FindBarsAtTheirFullLengthLocked) {
+  for (const double lightness : {1.0, 1e-2, 1e-4, 1e-6}) {
+    HeldLightBody bars(lightness, 0);
+    for (const int body : {0, 1}) {
+      const double spin = body == 0 ? 2 : -2;
+      centerOfMass(bars.state, body) = Vec3(0.5 + body, 0, 0);
+      linearVelocity(bars.state, body) = Vec3(0, 1, 0), angularVelocity(bars.state, body) = Vec3(0, 0, spin);
+    }
+    const Vec3 end(0.5, 0, 0);
+    bars.constraints = {{{0, -end}, {kFixed, Vec3::Zero()}, BallJointConstraint()},
+                        {{0, end}, {1, -end}, BallJointConstraint()},
+                        {{1, end}, {kFixed, Vec3(2 + 1e-9, 0, 0)}, BallJointConstraint()}};
+    ConstraintSolver solver(bars.constraints, bars.bodies);
+    solver.factorize(bars.state);
+    EXPECT_TRUE(solver.leaveNoMotion(bars.state, 0)) << lightness;
+  }
+}
+
 // Bodies that nothing turns: of a hinge, the rows of rotations ask for what they do not get. The others are kept all
 // the same, whatever is asked of those, but for rounding times the ratio of the masses.
 TEST(ConstraintForces, KeepPointsOfBodiesThatNothingTurns) {
