@@ -10,7 +10,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kClearlyDeeper = 1.01;  // than the centre of the bounds: by more than rounding
+constexpr double kMinDepthRatio = 1.01;  // than the centre of the bounds: by more than rounding
 
 /// Half the extents (m) of a disc across a unit axis.
 Vec3 discExtents(double radius, const Vec3& axis) {
@@ -152,7 +152,7 @@ double innerRadius(const Collider& collider) {
   if (collider.kind() != ColliderKind::mesh) {
     const double atCenter = depthOf(collider.bounds.center(), collider),
                  atMean = depthOf(meanOf(collider.points), collider);
-    return atMean > kClearlyDeeper * atCenter ? atMean : atCenter;
+    return atMean > kMinDepthRatio * atCenter ? atMean : atCenter;
   }
   if (!collider.mesh) return collider.boundingRadius;
   if (collider.mesh->isSheet) return std::numeric_limits<double>::infinity();

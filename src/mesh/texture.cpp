@@ -29,12 +29,19 @@ namespace cradle {
 namespace {
 
 constexpr std::uint64_t kMaxTextureBytes = 128 << 20;  // of a file
-constexpr std::uint64_t kDecodingMemory = 2ULL << 30;  // bytes: the largest picture takes 0.8 GB on the way
+constexpr std::uint64_t kDecodingMemory = 2ULL << 30;  // bytes: the largest picture took 1 GB with its answer
 constexpr std::uint64_t kDecodingSeconds = 20;         // s, of computing
 constexpr int kChannels = 3;
 
 const stbi_uc* encoded(const std::string& bytes) {
   return reinterpret_cast<const stbi_uc*>(bytes.data());
+}
+
+/// The end of a sentence, after stb_image has failed.
+std::string undecoded() {
+  const std::string reason = stbi_failure_reason();
+  return fmt::format("cannot be decoded ({})",
+                     reason == "outofmem" ? "the memory for such a file is too little" : reason);
 }
 
 /// Throws std::runtime_error with the end of a sentence, in the process that calls.
@@ -44,14 +51,14 @@ TexturePixels pixelsOf(const std::string& bytes) {
   TexturePixels pixels;
   int channels = 0;
   if (stbi_info_from_memory(encoded(bytes), size, &pixels.width, &pixels.height, &channels) == 0)
-    throw std::runtime_error(fmt::format("cannot be decoded ({})", stbi_failure_reason()));
+    throw std::runtime_error(undecoded());
   if (pixels.width > kMaxTextureSide || pixels.height > kMaxTextureSide)
     throw std::runtime_error(fmt::format("is {}x{} pixels, and at most {} a side are allowed", pixels.width,
                                          pixels.height, kMaxTextureSide));
   const std::unique_ptr<stbi_uc, void (*)(void*)> rows(
       stbi_load_from_memory(encoded(bytes), size, &pixels.width, &pixels.height, &channels, kChannels),
       stbi_image_free);
-  if (!rows) throw std::runtime_error(fmt::format("cannot be decoded ({})", stbi_failure_reason()));
+  if (!rows) throw std::runtime_error(undecoded());
   const auto count =
       std::size_t{kChannels} * static_cast<std::size_t>(pixels.width) * static_cast<std::size_t>(pixels.height);
   pixels.rgb.assign(rows.get(), rows.get() + count);

@@ -41,8 +41,7 @@ std::optional<std::string> cardFault(const Scene& scene, int width, int height) 
   if (layout.fits) return std::nullopt;
   return fmt::format(
       "{}: title and subtitle take {} lines of the smallest text, {:.0f} pixels, in a picture of {}x{}; allowed is "
-      "what "
-      "fits into it; shorten them, or make the picture wider",
+      "the height that there is; shorten them, or make the picture wider",
       scene.titleCard->titleWhere, layout.title.size() + layout.subtitle.size(), layout.height, width, height);
 }
 

@@ -168,17 +168,17 @@ double neededHeight(const std::vector<CaptionExtent>& captions, int width, int h
 }
 
 CardLayout layOutCard(const TitleCard& card, int width, int height) {
-  constexpr double kLeastShrink = kSmallestText / kTitleText;
+  constexpr double kMinShrinkRatio = kSmallestText / kTitleText;
   const double widest = widestText(width, height);
   CardLayout layout;
   for (const bool breaksWords : {false, true}) {
-    const double shrink = fittingEm(1, kLeastShrink, [&](double tried) {
+    const double shrink = fittingEm(1, kMinShrinkRatio, [&](double tried) {
       const CardLayout sized = cardOfSize(card, tried, width, height);
       return sized.fits && (breaksWords || (hasWholeWords(card.title, sized.titleSize, widest) &&
                                             hasWholeWords(card.subtitle, sized.subtitleSize, widest)));
     });
     layout = cardOfSize(card, shrink, width, height);
-    if (layout.fits && shrink > kLeastShrink) break;
+    if (layout.fits && shrink > kMinShrinkRatio) break;
   }
   return layout;
 }

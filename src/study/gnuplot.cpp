@@ -49,11 +49,11 @@ std::string quotedForGnuplot(const std::string& text) {
 }
 
 FittedText fittedForGnuplot(const std::string& text, double fontSize, double width, double height) {
-  constexpr double kLeastSize = 6, kSmaller = 0.94, kLine = 1.3;  // the line in em
+  constexpr double kMinFontSize = 6, kSmaller = 0.94, kLine = 1.3;  // the line in em
   double size = fontSize;
   const auto lines = [&] { return wrappedText(printableLine(text), {kChartEm * size, 0, 0}, width); };
   const auto isTooHigh = [&] { return static_cast<double>(lines().size()) * kLine * kChartEm * size > height; };
-  while (size > kLeastSize && lines().size() > 1 && isTooHigh()) size *= kSmaller;
+  while (size > kMinFontSize && lines().size() > 1 && isTooHigh()) size *= kSmaller;
   std::string quoted;
   for (const std::string& line : lines()) quoted += (quoted.empty() ? "" : ".\"\\n\".") + quotedForGnuplot(line);
   const double below = std::max(static_cast<double>(lines().size()) - 1, 0.0) * kLine * kChartEm * size;
