@@ -25,6 +25,7 @@
 #include "commands/plot_runs.h"
 #include "commands/simulate_scene.h"
 #include "commands/study_scenes.h"
+#include "commands/warnings.h"
 #include "core/console.h"
 #include "core/crash.h"
 #include "core/error.h"
@@ -333,7 +334,13 @@ int run(int argc, char** argv) {
   CLI::App app("Cradle: rigid-body physics from a scene file, and pictures of it.", "cradle");
   CommandLine line;
   app.set_version_flag("--version", "cradle " CRADLE_VERSION);
-  app.add_flag("-q,--quiet", line.quiet, "no progress on stderr");
+  app.add_flag_function(
+      "-q,--quiet",
+      [&line](std::int64_t count) {
+        line.quiet = true;
+        if (count > 1) silenceWarnings();
+      },
+      "no progress on stderr; twice (-qq): no warnings either");
   app.require_subcommand(1);
   app.fallthrough();
   app.footer(

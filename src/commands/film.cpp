@@ -9,7 +9,7 @@
 
 #include "commands/drawing_memory.h"
 #include "commands/film_drawer.h"
-#include "commands/simulate_scene.h"
+#include "commands/warnings.h"
 #include "core/error.h"
 #include "core/output_path.h"
 #include "core/printable.h"

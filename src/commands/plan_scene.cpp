@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "commands/warnings.h"
 #include "core/console.h"
 #include "core/printable.h"
 #include "scene/count_bodies.h"

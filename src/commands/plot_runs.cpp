@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "commands/trajectory_source.h"
+#include "commands/warnings.h"
 #include "core/error.h"
 #include "core/output_path.h"
 #include "core/printable.h"

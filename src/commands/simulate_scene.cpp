@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "commands/body_list.h"
+#include "commands/warnings.h"
 #include "core/console.h"
 #include "core/cpu_stopwatch.h"
 #include "core/error.h"
@@ -130,18 +130,7 @@ void printAchievedAccuracy(const Scene& scene, const std::string& output, bool q
   }
 }
 
-/// The first of them, and how many more there are: a file may give rise to a million.
-void warnOfAll(const std::vector<std::string>& warnings) {
-  constexpr std::size_t kMaxTold = 50;  // as of faults
-  for (std::size_t i = 0; i < std::min(warnings.size(), kMaxTold); ++i) warn(warnings[i]);
-  if (warnings.size() > kMaxTold) warn(fmt::format("and {} more warnings", warnings.size() - kMaxTold));
-}
-
 }  // namespace
-
-void warn(const std::string& warning) {
-  show(stderr, "warning: {}\n", printableLine(warning));
-}
 
 Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
   LoadedScene loaded = loadScene(path, options.assetRoot);

@@ -37,9 +37,6 @@ void checkScene(const std::string& scenePath, const SceneOptions& options);
 /// A scene file with its warnings printed to stderr, options applied.
 Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options);
 
-/// Tells a warning on stderr.
-void warn(const std::string& warning);
-
 /// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr. `world` is at its
 /// start; `watch` may be null.
 void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet);

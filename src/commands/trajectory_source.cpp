@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "commands/simulate_scene.h"
+#include "commands/warnings.h"
 #include "core/error.h"
 #include "render/upright.h"
 #include "scene/load_scene.h"

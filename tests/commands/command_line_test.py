@@ -145,6 +145,19 @@ class Scenes(InTemporaryFolder):
         self.assertEqual(result.returncode, 0)
         self.assertRegex(result.stderr, r'^warning: .*s\.json:\d+:\d+ /pushes/0: the ray misses "ball" at 0\.05 s.*\n$')
 
+    def test_warnings_are_silenced_by_quiet_given_twice(self):
+        fall = [{"name": "floor", "shape": {"box": {"size": [9, 1, 9]}}, "motion": "static", "position": [0, -0.5, 0]}]
+        fall += [{"name": f"box{i}", "shape": {"box": {"size": [0.3, 0.1, 0.3]}}, "position": [0, 0.06 + 0.11 * i, 0]} for i in range(6)]
+        missed = {"body": "box0", "ray": {"origin": [0, 9, 5], "direction": [0, 0, -1]}, "force": [0, 0, -3], "start": 0.05, "duration": 0.02}
+        path, target = self.write("s.json", scene(bodies=fall, pushes=[missed], accuracy="visual")), self.path("x.sqlite")
+        self.assertIn("warning: ", cradle("simulate", path, "-o", target, "-q").stderr)
+        for words in (["-qq"], ["-q", "-q"], ["--quiet", "--quiet"]):
+            result = cradle("simulate", path, "-o", target, *words)
+            self.assertEqual((result.returncode, result.stderr), (0, ""), words)
+            result = cradle(*words, "render", path, "-o", self.path("f"), "--frames", "0:5", "--size", "32x32", "--overwrite")
+            self.assertEqual((result.returncode, result.stderr), (0, ""), words)
+        self.assertIn("no such file", cradle("simulate", self.path("none.json"), "-o", target, "-qq").stderr)
+
     def test_words_that_cannot_be_shown_are_told_with_their_place(self):
         captions = [{"text": "fine"}, {"text": "not \u6f22"}]
         path = self.write("s.json", scene(captions=captions, titleCard={"title": "Title", "subtitle": "\U0001f680"}))
