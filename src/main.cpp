@@ -188,6 +188,9 @@ void addPictures(CLI::App& app, CommandLine& line) {
   render->add_option("--frames", line.pictures.frames,
                      "FIRST:END, half-open, FIRST:, :END or one frame (default: all pictures; the state at the "
                      "duration is none of them, but may be named)");
+  render->add_option("--passes", line.pictures.passes,
+                     "what is written of each frame, with commas: rgb (default), depth, normal, segmentation, flow, "
+                     "backwardFlow, objectCoordinates, or all");
   render->add_flag("--overwrite", line.pictures.overwrite, "replace frames that are in the folder already");
   addPictureOptions(render, line);
 

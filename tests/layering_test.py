@@ -20,14 +20,15 @@ MAY_INCLUDE = {
     "image": ["core"],
     "render": ["core", "math", "mesh", "scene", "trajectory", "image"],
     "overlay": ["core", "math", "mesh", "scene", "trajectory", "image", "render"],
+    "truth": ["core", "math", "mesh", "scene", "trajectory", "render"],
     "study": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "image"],
-    "commands": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "image", "render", "overlay", "study"],
+    "commands": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "image", "render", "overlay", "truth", "study"],
 }
 # The one place of each library (Eigen and fmt are everywhere).
 LIBRARY_UNITS = {
     "assimp/": ["mesh"],
     "libqhull_r/": ["mesh/convex_hull"],
-    "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file", "commands/plan_scene"],
+    "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file", "commands/plan_scene", "truth/truth_json"],
     "CLI/": ["main.cpp"],
     "sqlite3.h": ["trajectory/database"],
     "stb/": ["image/png", "image/font", "mesh/texture"],

@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <future>
-
 #include "commands/drawing_memory.h"
 #include "commands/number_pair.h"
 #include "core/error.h"
-#include "core/interruption.h"
 #include "overlay/caption_check.h"
 #include "overlay/captions.h"
 
@@ -64,19 +61,6 @@ Image FilmDrawer::draw(long number) {
     drawCaptions(source_.drawnScene(), frame, {camera, image.width, image.height},
                  overlay_ ? overlay_->upperPanels(image.width, image.height) : std::vector<PicturePart>(), image);
   return image;
-}
-
-void drawFrames(long first, long end, Progress& progress, const std::function<Image(long frame)>& draw,
-                const std::function<void(long frame, const Image& picture)>& take) {
-  std::future<void> taken;
-  for (long frame = first; frame < end; ++frame) {
-    throwIfInterrupted();
-    Image image = draw(frame);
-    if (taken.valid()) taken.get();
-    taken = std::async(std::launch::async, [&take, frame, picture = std::move(image)] { take(frame, picture); });
-    progress.update(frame - first + 1);
-  }
-  taken.get();
 }
 
 }  // namespace cradle

@@ -1,12 +1,14 @@
 #pragma once
 
-#include <functional>
+#include <future>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "commands/film_view.h"
 #include "commands/pictures.h"
 #include "commands/trajectory_source.h"
+#include "core/interruption.h"
 #include "core/progress.h"
 #include "image/image.h"
 #include "overlay/film_overlay.h"
@@ -43,9 +45,19 @@ class FilmDrawer {
   std::optional<FilmOverlay> overlay_;
 };
 
-/// Draws frames from `first` on to before `end` in order, and hands each picture on in a thread beside the drawing of
-/// the next one.
-void drawFrames(long first, long end, Progress& progress, const std::function<Image(long frame)>& draw,
-                const std::function<void(long frame, const Image& picture)>& take);
+/// Draws frames from `first` on to before `end` in order, and hands on what draw(frame) gives, to take(frame, drawn),
+/// in a thread beside the drawing of the next one.
+template <class Draw, class Take>
+void drawFrames(long first, long end, Progress& progress, const Draw& draw, const Take& take) {
+  std::future<void> taken;
+  for (long frame = first; frame < end; ++frame) {
+    throwIfInterrupted();
+    auto drawn = draw(frame);
+    if (taken.valid()) taken.get();
+    taken = std::async(std::launch::async, [&take, frame, drawn = std::move(drawn)] { take(frame, drawn); });
+    progress.update(frame - first + 1);
+  }
+  taken.get();
+}
 
 }  // namespace cradle

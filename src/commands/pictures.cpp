@@ -3,17 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <limits>
+#include <thread>
 
 #include "commands/drawing_memory.h"
 #include "commands/film_drawer.h"
+#include "commands/frame_folder.h"
 #include "commands/number_pair.h"
+#include "commands/truth_film.h"
 #include "core/error.h"
 #include "core/folder_lock.h"
 #include "core/interruption.h"
-#include "core/output_path.h"
+#include "core/part_file.h"
 #include "core/progress.h"
+#include "core/read_file.h"
 #include "image/png.h"
 #include "image/video.h"
 #include "scene/ranges.h"
@@ -24,10 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Range kFilmRates{1e-3, 1e5};  // 1/s
-
-struct FrameRange {
-  long first, end;  // half-open
-};
 
 /// FIRST:END, of which either may be left out, or one frame. Without END, to `count`.
 std::optional<FrameRange> parseRange(const std::optional<std::string>& text, long count) {
@@ -53,72 +54,65 @@ FrameRange parseFrames(const std::optional<std::string>& text, const TrajectoryS
   return *range;
 }
 
-constexpr long kMaxFrames = 1'000'000;  // that file names have digits for
-
-/// The number of a frame's file, or of one that is being written; nothing for other names.
-std::optional<long> frameNumber(const std::string& name) {
-  const std::string whole = name.ends_with(".part") ? name.substr(0, name.size() - 5) : name;
-  const bool isFrame = whole.size() == 16 && whole.starts_with("frame_") && whole.ends_with(".png") &&
-                       whole.find_first_not_of("0123456789", 6) == 12;
-  return isFrame ? std::optional(std::stol(whole.substr(6, 6))) : std::nullopt;
-}
-
-std::string frameName(long frame) {
-  return fmt::format("frame_{:06}.png", frame);
-}
-
-/// Numbers of the frames in a folder that are in a range, ascending.
-std::vector<long> framesIn(const std::string& folder, const FrameRange& range) {
-  std::vector<long> numbers;
-  std::error_code missing;  // none in a folder that is still to be made
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, missing)) {
-    const auto number = frameNumber(entry.path().filename().string());
-    if (number && *number >= range.first && *number < range.end) numbers.push_back(*number);
-  }
-  std::sort(numbers.begin(), numbers.end());
-  return numbers;
-}
-
-/// Refuses a folder with frames that a run would replace without being told to. Without `range`, all frames are its
-/// own.
-void requireRoom(const std::string& folder, const std::optional<FrameRange>& range, const PictureOptions& options) {
-  requireOwnFolder(folder, "frame", [](const std::string& name) { return frameNumber(name).has_value(); });
-  const std::vector<long> there = framesIn(folder, range.value_or(FrameRange{0, kMaxFrames}));
-  if (there.empty() || options.overwrite) return;
-  throw Error(
-      ErrorKind::output, folder,
-      fmt::format("holds {} of the frames to be drawn, {} to {}; name a new or empty folder, or say --overwrite to "
-                  "replace them",
-                  there.size(), frameName(there.front()), frameName(there.back())));
-}
-
 /// Holds the folder, once it is there, and refuses it as requireRoom does: what another run has put there before that
 /// is seen. Runs that draw parts of a film share it.
 void takeFolder(const std::string& folder, const std::optional<FrameRange>& range, const PictureOptions& options,
-                std::optional<FolderLock>& lock) {
+                const std::vector<std::string>& kinds, std::optional<FolderLock>& lock) {
   std::error_code missing;
   if (lock) return;
   if (fs::is_directory(folder, missing)) lock.emplace(folder, options.frames ? FolderUse::shared : FolderUse::alone);
-  requireRoom(folder, range, options);
+  requireRoom(folder, range.value_or(FrameRange{0, kMaxFrames}), kinds, options.overwrite);
 }
 
-/// Frames that the film has not would get between its own when it is encoded.
-void requireNoOthers(const std::string& folder, long frameCount) {
-  const std::vector<long> others = framesIn(folder, {frameCount, kMaxFrames});
-  if (others.empty()) return;
-  throw Error(
-      ErrorKind::output, folder,
-      fmt::format("holds {} to {}, which are of another film, for this one has {} frames; remove them, or name a "
-                  "new or empty folder",
-                  frameName(others.front()), frameName(others.back()), frameCount));
+void writeFile(const fs::path& path, const std::string& bytes) {
+  PartFile file(path.string());
+  file.write(bytes);
+  file.complete();
 }
+
+/// Writes a file that runs beside this one may be writing with the same bytes: it waits for them.
+void writeShared(const fs::path& path, const std::string& bytes) {
+  constexpr int kAttempts = 100;
+  constexpr std::chrono::milliseconds kPause(20);
+  for (int attempt = 1;; ++attempt) {
+    std::error_code missing;
+    if (fs::file_size(path, missing) == bytes.size() &&
+        readFile(path.string(), bytes.size(), ErrorKind::output) == bytes)
+      return;
+    try {
+      return writeFile(path, bytes);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::output || attempt == kAttempts) throw;
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
+/// The kinds of files that a run writes for each frame.
+std::vector<std::string> kindsOf(const std::vector<Pass>& passes) {
+  std::vector<std::string> kinds;
+  for (const Pass pass : passes) {
+    kinds.push_back(pass == Pass::rgb ? kPictureKind : nameOf(pass));
+    if (pass == Pass::flow) kinds.push_back(kHiddenKind);
+  }
+  if (passes != std::vector{Pass::rgb}) kinds.push_back(kInstancesKind);
+  return kinds;
+}
+
+/// All that is known of a frame, as it goes into files.
+struct FrameResult {
+  std::optional<Image> picture;
+  std::vector<FileBytes> truth;
+};
 
 }  // namespace
 
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet) {
+  const std::vector<Pass> passes = options.passes ? parsePasses(*options.passes) : std::vector{Pass::rgb};
+  const std::vector<std::string> kinds = kindsOf(passes);
   std::optional<ResultFolder> made;  // outlives the lock
   std::optional<FolderLock> lock;
-  takeFolder(folder, parseRange(options.frames, kMaxFrames), options, lock);
+  takeFolder(folder, parseRange(options.frames, kMaxFrames), options, kinds, lock);
   if (options.overlay) parseOverlays(*options.overlay);
   TrajectorySource source(input, quiet, {.assetRoot = options.assetRoot});
   const PictureOrder order(options, source.scene());
@@ -126,13 +120,29 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
   requireNoOthers(folder, source.frameCount());
   source.simulate();
   requireDrawingMemory(order.size.width, order.size.height);  // of what is left
-  FilmDrawer drawer(source, order);
+  const View view = viewOf(source, order.size.width, order.size.height);
+  std::optional<FilmDrawer> drawer;
+  if (std::find(passes.begin(), passes.end(), Pass::rgb) != passes.end()) drawer.emplace(source, order, view);
+  std::optional<TruthFilm> truth;
+  if (passes != std::vector{Pass::rgb}) truth.emplace(source, view, order.size.width, order.size.height, passes);
   made.emplace(folder);
-  takeFolder(folder, range, options, lock);
+  takeFolder(folder, range, options, kinds, lock);
+  if (truth)
+    for (const FileBytes& file : truth->filesOfFilm()) writeShared(fs::path(folder) / file.name, file.bytes);
   Progress progress("Drawing", "pictures", range.end - range.first, quiet);
   drawFrames(
-      range.first, range.end, progress, [&](long frame) { return drawer.draw(frame); },
-      [&](long frame, const Image& picture) { writePng(picture, (fs::path(folder) / frameName(frame)).string()); });
+      range.first, range.end, progress,
+      [&](long frame) {
+        FrameResult result;
+        if (drawer) result.picture = drawer->draw(frame);
+        if (truth) result.truth = truth->filesOf(frame);
+        return result;
+      },
+      [&](long frame, const FrameResult& result) {
+        const std::string picture = frameFileName({kPictureKind, frame});
+        if (result.picture) writePng(*result.picture, (fs::path(folder) / picture).string());
+        for (const FileBytes& file : result.truth) writeFile(fs::path(folder) / file.name, file.bytes);
+      });
 }
 
 void encodeFrames(const std::string& folder, const std::string& film, double framesPerSecond, bool quiet) {

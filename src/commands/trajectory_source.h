@@ -31,6 +31,7 @@ class TrajectorySource {
 
   /// Scene, frames and events as pictures show them: turned so that y is up.
   const Scene& drawnScene() const { return upright_ ? upright_->scene : scene_; }
+  Quat worldFromDrawn() const { return upright_ ? upright_->fromWorld.conjugate() : Quat::Identity(); }
   Frame drawnFrameAt(long number);
   std::vector<Event> drawnPushEvents();
   std::vector<Event> drawnEvents() const;  // of a whole trajectory

@@ -53,24 +53,6 @@ void appendSolids(const Appearance& appearance, const RigidTransform& worldFromB
   }
 }
 
-/// A plane other than the ground, as a square next to what is shown; from behind, it is not there.
-void appendWall(const Scene& scene, const Appearance& appearance, const View& view, std::size_t body,
-                const Vec3& viewpoint, DrawList& list) {
-  const Plane* plane = std::get_if<Plane>(&scene.bodies[body].shape);
-  if (plane == nullptr || (appearance.ground && appearance.ground->body == static_cast<int>(body))) return;
-  const RigidTransform& place = scene.bodies[body].worldFromBody;
-  const Vec3 normal = place.rotation * plane->normal;
-  if (normal.dot(viewpoint - place.translation) <= 0) return;
-  const DrawnMesh& mesh = appearance.meshes[static_cast<std::size_t>(appearance.wallMesh)];
-  MeshItem item{appearance.wallMesh, 0, static_cast<std::uint32_t>(mesh.triangles.size())};
-  const Vec3 middle = view.bounds.isEmpty() ? place.translation : Vec3(view.bounds.center());
-  item.worldFromMesh = {rotationBetween(Vec3::UnitY(), normal),
-                        middle - normal.dot(middle - place.translation) * normal};
-  item.surface = appearance.bodies[body].surface;
-  for (const Vec3& vertex : mesh.vertices) item.bounds.extend(item.worldFromMesh * vertex);
-  list.walls.push_back(item);
-}
-
 Bounds boundsOf(const MeshItem& item) {
   return item.bounds;
 }
@@ -170,6 +152,23 @@ Bounds OccluderItem::reach() const {
   return {center - extent, center + extent};
 }
 
+std::optional<MeshItem> wallOf(const Scene& scene, const Appearance& appearance, const View& view, std::size_t body,
+                               const Vec3& viewpoint) {
+  const Plane* plane = std::get_if<Plane>(&scene.bodies[body].shape);
+  if (plane == nullptr || (appearance.ground && appearance.ground->body == static_cast<int>(body))) return std::nullopt;
+  const RigidTransform& place = scene.bodies[body].worldFromBody;
+  const Vec3 normal = place.rotation * plane->normal;
+  if (normal.dot(viewpoint - place.translation) <= 0) return std::nullopt;
+  const DrawnMesh& mesh = appearance.meshes[static_cast<std::size_t>(appearance.wallMesh)];
+  MeshItem item{appearance.wallMesh, 0, static_cast<std::uint32_t>(mesh.triangles.size())};
+  const Vec3 middle = view.bounds.isEmpty() ? place.translation : Vec3(view.bounds.center());
+  item.worldFromMesh = {rotationBetween(Vec3::UnitY(), normal),
+                        middle - normal.dot(middle - place.translation) * normal};
+  item.surface = appearance.bodies[body].surface;
+  for (const Vec3& vertex : mesh.vertices) item.bounds.extend(item.worldFromMesh * vertex);
+  return item;
+}
+
 DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const SeenFrame& seen) {
   const auto places = placeBodies(scene, seen.frame);
   DrawList list;
@@ -179,7 +178,7 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
     appendBody(appearance.bodies[i], places[i], list);
     appendRound(appearance, places[i], body, list);
     appendSolids(appearance, places[i], body, list);
-    appendWall(scene, appearance, view, i, seen.viewpoint, list);
+    if (const auto wall = wallOf(scene, appearance, view, i, seen.viewpoint)) list.walls.push_back(*wall);
     bodyOfMesh.resize(list.meshes.size(), body);
     bodyOfSphere.resize(list.spheres.size(), body);
     bodyOfCylinder.resize(list.cylinders.size(), body);

@@ -26,6 +26,7 @@ struct SphereItem {
   Surface surface = {};
   int firstNearOccluder = 0, nearOccluders = 0;  // range of DrawList::nearOccluders
   Quat rotation = Quat::Identity();              // worldFromBody, of a pattern
+  std::optional<LinkKind> link = {};             // whose it is, unless a body's or an arrow's
   Bounds bounds() const { return {center - Vec3::Constant(radius), center + Vec3::Constant(radius)}; }
 };
 
@@ -37,6 +38,7 @@ struct CylinderItem {
   Surface surface = {};
   int firstNearOccluder = 0, nearOccluders = 0;  // range of DrawList::nearOccluders
   Vec3 side = Vec3::UnitX();                     // unit, across the axis: the body's x axis, of a pattern
+  std::optional<LinkKind> link = {};             // as of a sphere
   Bounds bounds() const;
 };
 
@@ -54,8 +56,12 @@ struct TubeItem {
   double slack = 0;         // of a rope: half its span in units of the catenary's parameter; 0 if it is straight
   double lean = 0;          // of a rope: rise of its end over its length
   Surface surface = {};
-  Bounds bounds = {};  // m, world
+  Bounds bounds = {};                 // m, world
+  std::optional<LinkKind> link = {};  // as of a sphere
 };
+
+// Facets of tubes: the chords of a coil miss its circle by 1 % of its radius.
+constexpr int kSegmentsPerTurn = 20, kRopeSegments = 64, kSegmentsAround = 10;
 
 constexpr double kSphereReach = 3;  // radii from a sphere's centre: beyond, it is not mirrored and shades nothing
 constexpr double kBoxReach = 1.6;   // middle half edges from a box's surface
@@ -99,6 +105,11 @@ struct SeenFrame {
   const Frame& frame;
   Vec3 viewpoint;
 };
+
+/// A plane other than the ground, as a square next to what is shown; none from behind, where it is not there, nor of
+/// another body.
+std::optional<MeshItem> wallOf(const Scene& scene, const Appearance& appearance, const View& view, std::size_t body,
+                               const Vec3& viewpoint);
 
 /// What is to be drawn. Items stand in the order of the scene. O(bodies x spheres).
 DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const SeenFrame& seen);

@@ -12,10 +12,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kSegmentsPerTurn = 20;  // of a coil: its chords miss the circle by 1 % of its radius
-constexpr int kRopeSegments = 64;
-constexpr int kSegmentsAround = 10;  // of a wire
-constexpr double kBoxMargin = 2;     // pixels: samples lie beside centres, and rounding
+constexpr double kBoxMargin = 2;  // pixels: samples lie beside centres, and rounding
 
 /// The pixels in which a hull may be seen: all, if it is not wholly in front of the camera.
 PixelRectangle seenIn(const DrawnHull& hull, const RenderSetup& setup) {

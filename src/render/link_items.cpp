@@ -275,8 +275,13 @@ std::pair<double, double> railEnds(const Slider& slider, double least, double mo
 void appendLinks(const Scene& scene, const Appearance& appearance, const View& view,
                  const std::vector<RigidTransform>& worldFromBody, DrawList& list) {
   LinkBuilder builder(scene, appearance, view, worldFromBody, list);
-  forEachKindOfLink(scene, [&builder](const auto& links) {
+  forEachKindOfLink(scene, [&](const auto& links) {
+    const std::size_t spheres = list.spheres.size(), cylinders = list.cylinders.size(), tubes = list.tubes.size();
     for (const auto& link : links) builder.add(link);
+    const auto mark = [](auto& items, std::size_t first) {
+      for (std::size_t i = first; i < items.size(); ++i) items[i].link = LinkOf<decltype(links)>::kKind;
+    };
+    mark(list.spheres, spheres), mark(list.cylinders, cylinders), mark(list.tubes, tubes);
   });
 }
 

@@ -46,17 +46,26 @@ double smoothstep(double x) {
   return x * x * (3 - 2 * x);
 }
 
+/// Share of a coil's turns at a share `s` of the way.
+double turnedShare(const TubeItem& tube, double s) {
+  return std::clamp((s - tube.straightEnd) / (1 - 2 * tube.straightEnd), 0.0, 1.0);
+}
+
 }  // namespace
+
+Vec3 tubeOutwards(const TubeItem& tube, double s) {
+  const Vec3 across = (tube.end - tube.start).normalized().cross(tube.side);
+  const double angle = 2 * std::numbers::pi * tube.turns * turnedShare(tube, s);
+  return std::cos(angle) * tube.side + std::sin(angle) * across;
+}
 
 Vec3 tubePoint(const TubeItem& tube, double s) {
   const Vec3 line = tube.end - tube.start;
   const Vec3 straight = tube.start + s * line;
   if (tube.turns == 0) return tube.slack > 0 ? Vec3(straight + hanging(tube, 2 * s - 1) * tube.sag) : straight;
-  const double turned = std::clamp((s - tube.straightEnd) / (1 - 2 * tube.straightEnd), 0.0, 1.0);
+  const double turned = turnedShare(tube, s);
   const double open = smoothstep(std::min(turned, 1 - turned) / tube.straightEnd);
-  const double angle = 2 * std::numbers::pi * tube.turns * turned;
-  const Vec3 across = line.normalized().cross(tube.side);
-  return straight + tube.coilRadius * open * (std::cos(angle) * tube.side + std::sin(angle) * across);
+  return straight + tube.coilRadius * open * tubeOutwards(tube, s);
 }
 
 std::vector<Vec3> ropeCorners(const TubeItem& rope) {

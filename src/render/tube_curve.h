@@ -9,6 +9,9 @@ namespace cradle {
 /// The middle line of a tube as tube.vert draws it, at a share `s` of the way from start to end; m, world.
 Vec3 tubePoint(const TubeItem& tube, double s);
 
+/// A unit vector that turns along the tube with the turns of its coil, and is never along its middle line.
+Vec3 tubeOutwards(const TubeItem& tube, double s);
+
 /// Points whose convex hull contains a rope's middle line; m, world.
 std::vector<Vec3> ropeCorners(const TubeItem& rope);
 

@@ -32,6 +32,15 @@ void parseName(ObjectReader& reader, BodyDraft& draft) {
   draft.body.name = name.value_or("");
 }
 
+void parseCategory(ObjectReader& reader, BodyDraft& draft) {
+  const auto field = reader.find("category");
+  if (!field) return;
+  const auto category = readName(*field, reader.faults());
+  if (category && category->empty())
+    addFault(reader.faults(), *field, "the category is empty; leave it out, or name one");
+  draft.body.category = category.value_or("");
+}
+
 // The mass and velocities of a body that no force moves go unused; its writer should know.
 void warnOfUnused(ObjectReader& reader, const BodyDraft& draft) {
   if (draft.body.motion == Motion::dynamic) return;
@@ -192,6 +201,7 @@ void parseBody(const Field& field, SceneDraft& scene, FaultList& faults) {
   draft.body.where = faults.where(field.place(), field.pointer);
   ObjectReader reader(field, faults);
   parseName(reader, draft);
+  parseCategory(reader, draft);
   parseMaterialName(reader, scene, draft);
   parseShape(reader, draft);
   draft.body.motion = reader.choice<Motion>(

@@ -60,8 +60,9 @@ enum class Motion { dynamic, fixed, driven };
 
 struct Body {
   std::string name;
-  std::string where;  // place in the scene file, for messages: "FILE:LINE:COLUMN /bodies/0"
-  int material = 0;   // index into Scene::materials
+  std::string where;              // place in the scene file, for messages: "FILE:LINE:COLUMN /bodies/0"
+  std::string category = "body";  // what kind of thing it is, for those who learn from pictures
+  int material = 0;               // index into Scene::materials
   bool namesMaterial = false;
   Shape shape = Sphere{};
   CollisionChoice collision = CollisionChoice::automatic;

@@ -3,7 +3,7 @@
 
     command_line_test.py PROGRAM SOURCE_FOLDER
 """
-import base64, csv, json, os, pty, re, resource, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
+import ast, base64, csv, json, os, pty, re, resource, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
 
 PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 BALL = os.path.join(SOURCE, "assets", "ball.3ds")
@@ -711,6 +711,69 @@ class Pictures(InTemporaryFolder):
         for name in names:
             self.assertEqual(content(self.path("parts/" + name)), content(self.path("whole/" + name)), name)
         self.assertEqual(len({content(self.path("whole/" + name)) for name in names}), 18)
+
+    def passes(self, path):
+        """Shape and numbers of a NumPy file."""
+        bytes_ = content(path)
+        self.assertEqual(bytes_[:8], b"\x93NUMPY\x01\x00")
+        length = struct.unpack("<H", bytes_[8:10])[0]
+        header = ast.literal_eval(bytes_[10:10 + length].decode())
+        self.assertFalse(header["fortran_order"])
+        code = {"<f4": "f", "<u2": "H", "|u1": "B"}[header["descr"]]
+        return header["shape"], [value for value, in struct.iter_unpack("<" + code, bytes_[10 + length:])]
+
+    def test_passes_go_beside_pictures_or_without_them(self):
+        kinds = ("backwardFlow", "depth", "flow", "hidden", "normal", "objectCoordinates", "segmentation")
+        self.assertEqual(cradle("render", self.scene, "-o", self.path("all"), "--passes", "all").returncode, 0)
+        names = [f"{kind}_{i:06}.npy" for kind in kinds for i in range(6)] + [f"instances_{i:06}.json" for i in range(6)]
+        self.assertEqual(sorted(os.listdir(self.path("all"))),
+                         sorted(names + ["camera.json", "events.json"] + [f"frame_{i:06}.png" for i in range(6)]))
+        self.assertEqual(cradle("encode", self.path("all"), "-o", self.path("f.mp4")).returncode, 0)
+        self.assertEqual(film_frames(self.path("f.mp4")), "64,36,6")
+        cradle("simulate", self.scene, "-o", self.path("t.sqlite"))
+        command = [PROGRAM, "render", self.path("t.sqlite"), "-o", self.path("parts"), "--passes", ",".join(kinds).replace("hidden,", "")]
+        runs = [subprocess.Popen([*command, "--frames", frames], stderr=subprocess.PIPE, text=True) for frames in ("4:", "0:1", "1:4")]
+        for process in runs:
+            _, stderr = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 0, stderr)
+        self.assertEqual(sorted(os.listdir(self.path("parts"))), sorted(names + ["camera.json", "events.json"]))
+        for name in os.listdir(self.path("parts")):
+            self.assertEqual(content(self.path("parts/" + name)), content(self.path("all/" + name)), name)
+
+    def test_passes_have_their_shapes_and_the_state_at_the_end_no_next_one(self):
+        self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--passes", "all", "--frames", "5:7").returncode, 0)
+        for kind, shape in (("depth", (36, 64)), ("normal", (36, 64, 3)), ("segmentation", (36, 64)), ("flow", (36, 64, 2)),
+                            ("hidden", (36, 64)), ("backwardFlow", (36, 64, 2)), ("objectCoordinates", (36, 64, 3))):
+            self.assertEqual(self.passes(self.path(f"f/{kind}_000005.npy"))[0], shape)
+        isnan = lambda kind, frame: {value != value for value in self.passes(self.path(f"f/{kind}_{frame:06}.npy"))[1]}
+        self.assertEqual((isnan("flow", 5), isnan("flow", 6), isnan("backwardFlow", 6)), ({False}, {True}, {False}))
+        self.assertEqual(set(self.passes(self.path("f/segmentation_000005.npy"))[1]), {0, 1})
+        self.assertEqual(len(json.loads(content(self.path("f/camera.json")))["frames"]), 7)
+
+    def test_passes_that_are_there_are_refused_by_kind(self):
+        self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--passes", "depth").returncode, 0)
+        self.assertEqual(cradle("render", self.scene, "-o", self.path("f")).returncode, 0)  # pictures are others
+        self.refuses(5, ["holds 12 of the frames", "depth_000000.npy"], "render", self.scene, "-o", self.path("f"), "--passes", "depth")
+        self.refuses(2, ["--passes", "found \"dept\"", "segmentation"], "render", self.scene, "-o", self.path("g"), "--passes", "dept")
+        open(self.path("f/depth_1.npy"), "w").close()
+        self.refuses(5, ["depth_1.npy"], "render", self.scene, "-o", self.path("f"), "--passes", "normal")
+
+    def test_the_reader_of_ground_truth_in_the_documents_runs(self):
+        document = content(os.path.join(SOURCE, "docs", "ground_truth.md")).decode()
+        reader = self.write("read_truth.py", re.search(r"```python\n(.*?)```", document, re.S).group(1))
+        turned = {"name": "box", "shape": {"box": {"size": [0.3, 0.2, 0.1]}}, "position": [0, 0, 0], "linearVelocity": [1, 2, 0],
+                  "angularVelocity": [1, 2, 3], "category": "crate"}
+        ground = {"name": "ground", "shape": {"plane": {"normal": [1, 0, 0]}}, "motion": "static", "position": [-1, 0, 0]}
+        path = self.write("g.json", scene(gravity=[-9.81, 0, 0], bodies=[turned, ground], output={"framesPerSecond": 60, "width": 160, "height": 120}))
+        self.assertEqual(cradle("render", path, "-o", self.path("f"), "--passes", "all", "--frames", "3").returncode, 0)
+        result = subprocess.run([sys.executable, reader, self.path("f"), "3"], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        lines = re.findall(r"(\w+): (\d+) pixels, mean flow (\S+) pixels, points agree to (\S+) of", result.stdout)
+        self.assertEqual({name for name, *_ in lines}, {"box", "ground"})
+        for name, pixels, flow, error in lines:
+            self.assertGreater(int(pixels), 300)
+            self.assertLess(float(error), 1e-6)  # of single precision
+            self.assertEqual(float(flow) > 0.1, name == "box")
 
     def test_a_film_drawn_beside_its_simulation_is_that_of_the_trajectory_and_of_frames_drawn_apart(self):
         bodies = [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0.4, 0], "linearVelocity": [3, 0, 0]},

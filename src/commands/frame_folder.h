@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cradle {
+
+// Folders of pictures, and of what is known of them.
+
+inline const std::string kPictureKind = "frame", kHiddenKind = "hidden", kInstancesKind = "instances";
+
+/// A file of one frame: a picture, a pass by its name, or what goes with passes.
+struct FrameFile {
+  std::string kind;
+  long frame = 0;
+};
+
+/// KIND_000000.png of pictures, .json of instances, else .npy.
+std::string frameFileName(const FrameFile& file);
+
+struct FrameRange {
+  long first, end;  // half-open
+};
+constexpr long kMaxFrames = 1'000'000;  // that file names have digits for
+
+/// Refuses, with Error(output), a folder with others' files, and, unless `overwrites`, one with files of these kinds
+/// and frames.
+void requireRoom(const std::string& folder, const FrameRange& range, const std::vector<std::string>& kinds,
+                 bool overwrites);
+
+/// Refuses, with Error(output), a folder with files of frames that a film has not: they would get between its own when
+/// it is encoded.
+void requireNoOthers(const std::string& folder, long frameCount);
+
+}  // namespace cradle
