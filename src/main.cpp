@@ -20,6 +20,7 @@
 #include "commands/export_trajectory.h"
 #include "commands/film.h"
 #include "commands/inspect_mesh.h"
+#include "commands/pick_point.h"
 #include "commands/pictures.h"
 #include "commands/plan_scene.h"
 #include "commands/plot_runs.h"
@@ -41,13 +42,14 @@ constexpr int kExitOfSignal = 128;  // and its number, as shells have it
 
 /// Everything that the command line can say, and the command that it asks for.
 struct CommandLine {
-  std::string input, output, expected, actual;
+  std::string input, output, expected, actual, pixel;
   std::vector<std::string> scenes, methods, maps;
   SimulateOptions simulation;
   PictureOptions pictures;
   CompareOptions comparison;
   PlotOptions plot;
-  double scale = 1;
+  InspectOptions inspection;
+  long frame = 0;
   bool json = false, quiet = false, sideBySide = false;
   std::function<void()> command;
 };
@@ -194,6 +196,15 @@ void addPictures(CLI::App& app, CommandLine& line) {
   render->add_flag("--overwrite", line.pictures.overwrite, "replace frames that are in the folder already");
   addPictureOptions(render, line);
 
+  auto* pick = addCommand(app, line, "pick", "Say what a pixel of a picture shows, to push or anchor it there",
+                          "cradle pick scenes/newtons_cradle.json --frame 0 640,360",
+                          [&] { pickPoint(line.input, line.frame, line.pixel, line.pictures, line.quiet); });
+  pick->add_option("input", line.input, "scene or trajectory file")->required();
+  pick->add_option("pixel", line.pixel, "COLUMN,ROW from the upper left pixel")->required();
+  pick->add_option("--frame", line.frame, "number of the frame")->capture_default_str();
+  pick->add_option("--size", line.pictures.size, "WIDTHxHEIGHT in pixels (default: the scene's)");
+  addAssetRoot(pick, line.pictures.assetRoot);
+
   auto* encode =
       addCommand(app, line, "encode", "Make a film of a folder of frames", "cradle encode frames -o film.mp4",
                  [&] { encodeFrames(line.input, line.output, line.pictures.framesPerSecond, line.quiet); });
@@ -218,12 +229,15 @@ void addPictures(CLI::App& app, CommandLine& line) {
 }
 
 void addQuestions(CLI::App& app, CommandLine& line) {
-  auto* inspect =
-      addCommand(app, line, "inspect", "Say what the objects of a mesh file are as bodies of density 1",
-                 "cradle inspect assets/l_prism.3ds", [&] { inspectMesh(line.input, line.scale, line.json); });
+  auto* inspect = addCommand(app, line, "inspect", "Say what the objects of a mesh file are as bodies of density 1",
+                             "cradle inspect assets/l_prism.3ds", [&] { inspectMesh(line.input, line.inspection); });
   inspect->add_option("mesh", line.input, "mesh file (.3ds, .obj, .ply, .stl, .gltf, ...)")->required();
-  inspect->add_option("--scale", line.scale, "file's units to metres")->capture_default_str();
-  inspect->add_flag("--json", line.json, "print JSON");
+  inspect->add_option("--scale", line.inspection.scale, "file's units to metres")->capture_default_str();
+  inspect->add_flag("--vertices", line.inspection.listsVertices, "list the vertices by the numbers that anchors have");
+  inspect->add_option("--near", line.inspection.near, "with --vertices: X,Y,Z; the ten that are nearest to it")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  inspect->add_flag("--json", line.inspection.asJson, "print JSON");
 
   auto* check =
       addCommand(app, line, "check", "Check a scene and its meshes without simulating",

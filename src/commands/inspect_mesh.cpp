@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <numeric>
 
 #include "core/console.h"
 #include "core/error.h"
@@ -106,27 +107,96 @@ void printText(const Inspection& inspection) {
   for (const std::string& note : inspection.loaded.notes) show("  note: {}\n", printableLine(note));
 }
 
+/// Vertices of an object by their numbers, those nearest to a place alone, if there is one.
+class VertexList {
+ public:
+  explicit VertexList(const std::vector<double>& near) {
+    if (near.size() == 3) near_ = Vec3(near[0], near[1], near[2]);
+  }
+
+  void print(const Model& model) const {
+    for (const std::size_t number : numbersOf(model.solid.vertices)) {
+      const Vec3& vertex = model.solid.vertices[number];
+      const std::string away = near_ ? fmt::format("  {:.6g} away", (vertex - *near_).norm()) : "";
+      show("  vertex {:<8} {} {} {}{}\n", number, vertex.x(), vertex.y(), vertex.z(), away);
+    }
+  }
+
+  nlohmann::ordered_json jsonOf(const Model& model) const {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const std::size_t number : numbersOf(model.solid.vertices))
+      list.push_back({{"vertex", number}, {"point", cradle::jsonOf(model.solid.vertices[number])}});
+    return list;
+  }
+
+ private:
+  std::vector<std::size_t> numbersOf(const std::vector<Vec3>& vertices) const {
+    constexpr std::size_t kNearest = 10;  // as many as may be meant
+    std::vector<std::size_t> numbers(vertices.size());
+    std::iota(numbers.begin(), numbers.end(), 0U);
+    if (!near_) return numbers;
+    const auto distance = [&](std::size_t number) { return (vertices[number] - *near_).squaredNorm(); };
+    std::stable_sort(numbers.begin(), numbers.end(),
+                     [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+    numbers.resize(std::min(numbers.size(), kNearest));
+    return numbers;
+  }
+
+  std::optional<Vec3> near_;
+};
+
+void requireSensible(const InspectOptions& options) {
+  if (!kScales.holds(options.scale))
+    throw Error(ErrorKind::usage, "--scale",
+                fmt::format("found {}; allowed are numbers > 0, from {:g} to {:g}", options.scale, kScales.least,
+                            kScales.most));
+  const bool isFinite =
+      std::all_of(options.near.begin(), options.near.end(), [](double x) { return std::isfinite(x); });
+  if (!options.near.empty() && (options.near.size() != 3 || !isFinite))
+    throw Error(ErrorKind::usage, "--near", "allowed is X,Y,Z: three numbers, in m after --scale");
+  if (!options.near.empty() && !options.listsVertices) throw Error(ErrorKind::usage, "--near", "goes with --vertices");
+}
+
+/// All objects of a file as one body, as scenes have it that name none of several.
+LoadedModel wholeFile(const std::string& path, double scale) {
+  MeshReference reference;
+  reference.path = path;
+  reference.scale = scale;
+  return loadModel(reference);
+}
+
 }  // namespace
 
-void inspectMesh(const std::string& path, double scale, bool asJson) {
-  if (!kScales.holds(scale))
-    throw Error(
-        ErrorKind::usage, "--scale",
-        fmt::format("found {}; allowed are numbers > 0, from {:g} to {:g}", scale, kScales.least, kScales.most));
-  const std::vector<LoadedModel> objects = loadObjects(path, scale, ModelParts::solidAlone);
-  nlohmann::ordered_json list = nlohmann::ordered_json::array(), masses = list;
+void inspectMesh(const std::string& path, const InspectOptions& options) {
+  requireSensible(options);
+  const std::vector<LoadedModel> objects = loadObjects(path, options.scale, ModelParts::solidAlone);
+  const VertexList vertexList(options.near);
+  nlohmann::ordered_json list = nlohmann::ordered_json::array(), masses = list, vertices = list;
   for (const LoadedModel& object : objects) {
     const Inspection inspection = inspect(object);
-    if (!asJson) {
+    if (!options.asJson) {
       printText(inspection);
+      if (options.listsVertices) vertexList.print(object.model);
       continue;
     }
     list.push_back(jsonOf(inspection));
     masses.push_back(otherMassesOf(inspection));
+    if (options.listsVertices)
+      vertices.push_back({{"name", object.model.name}, {"list", vertexList.jsonOf(object.model)}});
   }
-  if (asJson)
-    show("{}\n", nlohmann::ordered_json{{"objects", list}, {"massFrom", masses}}.dump(
-                     1, ' ', true, nlohmann::json::error_handler_t::replace));
+  if (options.listsVertices && objects.size() > 1) {
+    const LoadedModel whole = wholeFile(path, options.scale);
+    if (options.asJson) {
+      vertices.push_back({{"name", nullptr}, {"list", vertexList.jsonOf(whole.model)}});
+    } else {
+      show("all objects as one body: {} vertices\n", whole.model.solid.vertices.size());
+      vertexList.print(whole.model);
+    }
+  }
+  if (!options.asJson) return;
+  nlohmann::ordered_json all{{"objects", list}, {"massFrom", masses}};
+  if (options.listsVertices) all["vertices"] = vertices;
+  show("{}\n", all.dump(1, ' ', true, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace cradle

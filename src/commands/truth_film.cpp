@@ -13,16 +13,24 @@
 namespace cradle {
 
 TruthFilm::TruthFilm(TrajectorySource& source, const View& view, int width, int height, const std::vector<Pass>& passes)
-    : source_(source), width_(width), height_(height), passes_(passes), surfaces_(source.drawnScene(), view) {
+    : source_(source),
+      width_(width),
+      height_(height),
+      passes_(passes),
+      surfaces_(source.drawnScene(), view),
+      camera_(cameraOf(source, view)) {
   const std::size_t bodies = source.scene().bodies.size();
-  if (bodies >= static_cast<std::size_t>(kFirstLinkId))
+  if (!passes.empty() && bodies >= static_cast<std::size_t>(kFirstLinkId))
     throw Error(ErrorKind::limit, "--passes",
                 fmt::format("the scene has {} bodies; a segmentation can tell {} apart", bodies, kFirstLinkId - 1));
-  FilmCamera camera = cameraOf(source, view);
-  for (long frame = 0; frame < source.frameCount(); ++frame) {
+}
+
+const Camera& TruthFilm::cameraAt(long frame) {
+  while (std::ssize(cameras_) <= frame) {
     throwIfInterrupted();
-    cameras_.push_back(camera.at(source.drawnFrameAt(frame)));
+    cameras_.push_back(camera_.at(source_.drawnFrameAt(std::ssize(cameras_))));
   }
+  return cameras_[static_cast<std::size_t>(frame)];
 }
 
 bool TruthFilm::has(Pass pass) const {
@@ -34,13 +42,13 @@ FrameRays& TruthFilm::raysOf(long frame) {
   if (!rays) {
     const Frame state = source_.drawnFrameAt(frame);
     rays = std::make_unique<FrameRays>(surfaces_, state, placeBodies(source_.drawnScene(), state),
-                                       Pinhole(cameras_[static_cast<std::size_t>(frame)], width_, height_));
+                                       Pinhole(cameraAt(frame), width_, height_));
   }
   return *rays;
 }
 
-Pinhole TruthFilm::inSceneWorld(long frame) const {
-  Camera camera = cameras_[static_cast<std::size_t>(frame)];
+Pinhole TruthFilm::inSceneWorld(long frame) {
+  Camera camera = cameraAt(frame);
   const Quat turn = source_.worldFromDrawn();
   camera.position = turn * camera.position;
   camera.target = turn * camera.target;
@@ -80,7 +88,7 @@ std::vector<FileBytes> TruthFilm::filesOf(long frame) {
   return files;
 }
 
-std::vector<FileBytes> TruthFilm::filesOfFilm() const {
+std::vector<FileBytes> TruthFilm::filesOfFilm() {
   std::vector<FrameCamera> cameras;
   for (long frame = 0; frame < source_.frameCount(); ++frame)
     cameras.push_back({frame, frameTime(source_.scene(), frame), inSceneWorld(frame)});

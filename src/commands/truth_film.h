@@ -20,27 +20,32 @@ struct FileBytes {
 /// Ground truth of a film: what its pixels show, as files.
 class TruthFilm {
  public:
-  /// `source` is simulated, and must outlive this object. Throws Error(limit) for more bodies than segmentations can
-  /// tell apart, and what finding the cameras throws. O(frames x bodies).
+  /// `source` is simulated, or beside this object, and must outlive it. Throws Error(limit) for more bodies than passes
+  /// can tell apart.
   TruthFilm(TrajectorySource& source, const View& view, int width, int height, const std::vector<Pass>& passes);
+
+  /// What is seen in a frame, in the drawn world. Throws as finding its camera does. It goes when a frame that is not
+  /// beside it is asked for by filesOf().
+  FrameRays& raysOf(long frame);
 
   /// Of the passes that were asked for but rgb, and instances_NUMBER.json.
   std::vector<FileBytes> filesOf(long frame);
 
   /// camera.json and events.json, of the whole film.
-  std::vector<FileBytes> filesOfFilm() const;
+  std::vector<FileBytes> filesOfFilm();
 
  private:
   bool has(Pass pass) const;
   bool isThere(long frame) const { return frame >= 0 && frame < source_.frameCount(); }
-  FrameRays& raysOf(long frame);
-  Pinhole inSceneWorld(long frame) const;
+  const Camera& cameraAt(long frame);
+  Pinhole inSceneWorld(long frame);
 
   TrajectorySource& source_;
   int width_, height_;
   std::vector<Pass> passes_;
   SurfaceSource surfaces_;
-  std::vector<Camera> cameras_;                        // of all frames, in the drawn world
+  FilmCamera camera_;
+  std::vector<Camera> cameras_;                        // of frames so far, in the drawn world
   std::map<long, std::unique_ptr<FrameRays>> nearby_;  // frames from one before the latest to one behind it
 };
 

@@ -3,9 +3,18 @@
 
 #include "mesh/triangle_mesh.h"
 
+#include <algorithm>
+
 #include "mesh/number_distinct.h"
 
 namespace cradle {
+
+std::size_t nearestVertex(const std::vector<Vec3>& vertices, const Vec3& point) {
+  const auto isNearer = [&](const Vec3& a, const Vec3& b) {
+    return (a - point).squaredNorm() < (b - point).squaredNorm();
+  };
+  return static_cast<std::size_t>(std::min_element(vertices.begin(), vertices.end(), isNearer) - vertices.begin());
+}
 
 TriangleMesh weld(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   const Numbering numbering = numberPositions(vertices);

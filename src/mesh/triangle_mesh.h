@@ -43,6 +43,9 @@ struct Model {
   DrawnMesh drawn;
 };
 
+/// The index of the vertex that is nearest to a point, the first of several; at least one vertex.
+std::size_t nearestVertex(const std::vector<Vec3>& vertices, const Vec3& point);
+
 /// Joins vertices whose coordinates are bit-equal (-0 counts as 0), in order of first appearance, and drops triangles
 /// that have two equal corners. O(n log n).
 TriangleMesh weld(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);

@@ -15,21 +15,6 @@ Eigen::Vector2d halfExtents(const Camera& camera, int width, int height) {
 
 }  // namespace
 
-Mat3 cameraAxes(const Vec3& position, const Vec3& target, const Vec3& up) {
-  const Vec3 towards = target - position;
-  const Vec3 back = towards.norm() > 0 ? Vec3(-towards.normalized()) : Vec3(Vec3::UnitZ());
-  Vec3 right = up.cross(back);
-  if (right.norm() < 1e-9) right = Vec3::UnitX();
-  right.normalize();
-  Mat3 axes;
-  axes << right, back.cross(right), back;
-  return axes;
-}
-
-Mat3 cameraAxes(const Camera& camera) {
-  return cameraAxes(camera.position, camera.target, camera.up);
-}
-
 Eigen::Matrix4f clipFromWorld(const Camera& camera, const Vec3& origin, int width, int height, double nearPlane) {
   const Mat3 axes = cameraAxes(camera);
   Eigen::Matrix4d viewFromWorld = Eigen::Matrix4d::Identity();

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/picked_points.h"
+
 namespace cradle {
 namespace {
 
@@ -15,16 +17,20 @@ const BodyDraft& draftOf(int body, const SceneDraft& scene) {
   return scene.bodies[scene.draftOfBody[static_cast<std::size_t>(body)]];
 }
 
-bool isKnown(const Anchor& anchor, const SceneDraft& scene) {
-  return anchor.body == kWorld || draftOf(anchor.body, scene).size.has_value();
+/// Whether all is there that says where an end is: of one that is picked, whatever may be before its body.
+bool isKnown(const AnchorDraft& end, const SceneDraft& scene) {
+  const auto hasShape = [](const BodyDraft& body) { return body.size.has_value(); };
+  if (end.pick) return std::all_of(scene.bodies.begin(), scene.bodies.end(), hasShape);
+  return end.anchor.body == kWorld || hasShape(draftOf(end.anchor.body, scene));
 }
 
 void resolveVertex(AnchorDraft& anchor, const SceneDraft& scene, FaultList& faults) {
-  if (!anchor.vertex) return;
+  if (!anchor.isOfMesh()) return;
   const Body& body = scene.scene.bodies[static_cast<std::size_t>(anchor.anchor.body)];
   const auto model = static_cast<std::size_t>(std::get<ModelShape>(body.shape).model);
   const std::vector<Vec3>& vertices = scene.scene.models[model].solid.vertices;
-  const auto index = static_cast<std::size_t>(*anchor.vertex);
+  const auto index =
+      anchor.nearestTo ? nearestVertex(vertices, *anchor.nearestTo) : static_cast<std::size_t>(*anchor.vertex);
   if (index < vertices.size()) {
     anchor.anchor.point = vertices[index];
   } else {
@@ -118,8 +124,11 @@ void Settlement::checkThatEndsMeet() const {
 void complete(LinkDraft& link, SceneDraft& scene, FaultList& faults) {
   link.isSettled = true;
   const std::size_t faultsBefore = faults.count();
-  resolveVertex(link.anchorA, scene, faults);
-  resolveVertex(link.anchorB, scene, faults);
+  for (AnchorDraft* end : {&link.anchorA, &link.anchorB}) {
+    resolveVertex(*end, scene, faults);
+    if (end->pick)
+      end->anchor.point = pickedPoint(*end->pick, end->anchor.body, scene.scene, faults).value_or(Vec3::Zero());
+  }
   if (faults.count() != faultsBefore) return;
   const Vec3 difference = worldPoint(link.anchorA.anchor, scene) - worldPoint(link.anchorB.anchor, scene);
   const double distance = difference.stableNorm();
@@ -135,7 +144,7 @@ void complete(LinkDraft& link, SceneDraft& scene, FaultList& faults) {
 void completeLinks(SceneDraft& draft, FaultList& faults) {
   for (LinkDraft& link : draft.links) {
     if (link.isSettled || !link.isSound) continue;
-    if (isKnown(link.anchorA.anchor, draft) && isKnown(link.anchorB.anchor, draft)) complete(link, draft, faults);
+    if (isKnown(link.anchorA, draft) && isKnown(link.anchorB, draft)) complete(link, draft, faults);
   }
 }
 

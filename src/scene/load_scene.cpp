@@ -110,6 +110,7 @@ LoadedScene parseScene(const std::string& text, const std::string& path, const M
   attachTextures(draft, textures, textFaults, meshFaults);
   attachModels(draft, models, textFaults, meshFaults);
   completeLinks(draft, textFaults);
+  if (textFaults.count() + meshFaults.count() == 0) completePushes(draft, textFaults);
   textFaults.throwIfAny();
   meshFaults.throwIfAny();
 

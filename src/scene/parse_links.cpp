@@ -7,6 +7,7 @@
 #include "math/rotation.h"
 #include "scene/parse_copies.h"
 #include "scene/parse_pose.h"
+#include "scene/picked_points.h"
 
 namespace cradle {
 namespace {
@@ -20,30 +21,43 @@ bool isFixed(int body, const Scene& scene) {
   return body == kWorld || scene.bodies[static_cast<std::size_t>(body)].motion != Motion::dynamic;
 }
 
-std::optional<int> readVertex(const Field& field, int body, const SceneDraft& scene, FaultList& faults) {
+/// An end that is a vertex of a mesh, the vertex nearest to a point, or what a pixel shows.
+void parseFoundAnchor(const Field& field, const SceneDraft& scene, FaultList& faults, AnchorDraft& draft) {
   const std::size_t faultsBefore = faults.count();
+  const int body = draft.anchor.body;
   ObjectReader reader(field, faults);
-  const auto vertex = reader.require("vertex");
-  const double index = reader.number("vertex", {0, kMaxVertices, false, true}, "", 0);
+  const auto vertex = reader.find("vertex"), nearest = reader.find("nearestVertex"), pick = reader.find("pick");
+  if (vertex) draft.vertex = static_cast<int>(reader.number("vertex", {0, kMaxVertices, false, true}, "", 0));
+  if (nearest) draft.nearestTo = readVector(*nearest, kCoordinates, "m", faults);
+  if (pick) draft.pick = parsePick(*pick, faults);
+  if (!vertex && !nearest && !pick)
+    reader.addMissing(
+        {"vertex", "nearestVertex", "pick"},
+        "the anchor names no point; give [x, y, z], a \"vertex\" by its number, the \"nearestVertex\" to a "
+        "point, or a \"pick\" from a picture");
+  if ((vertex && nearest) || ((vertex || nearest) && pick))
+    addFault(faults, field,
+             fmt::format("both {} are given; allowed is one of them",
+                         reader.keysFound({"vertex", "nearestVertex", "pick"})));
   reader.rejectUnknownKeys();
-  if (faults.count() != faultsBefore) return std::nullopt;
+  const bool isSound = faults.count() == faultsBefore;
   const bool hasVertices =
       body != kWorld && scene.bodies[scene.draftOfBody[static_cast<std::size_t>(body)]].meshField.has_value();
-  if (!hasVertices) {
+  if (isSound && draft.isOfMesh() && !hasVertices)
     addFault(faults, field, "only the vertices of a mesh can be anchors; give a point [x, y, z]");
-    return std::nullopt;
-  }
-  return static_cast<int>(index);
+  if (isSound && draft.pick && body == kWorld)
+    addFault(faults, field, "a point of the world cannot be picked; give a point [x, y, z], or the end a body");
+  if (faults.count() != faultsBefore) draft.vertex.reset(), draft.nearestTo.reset(), draft.pick.reset();
 }
 
 AnchorDraft parseAnchor(ObjectReader& reader, const char* key, int body, const Vec3& fallback,
                         const SceneDraft& scene) {
-  AnchorDraft draft{{body, fallback}, reader.field(), std::nullopt};
+  AnchorDraft draft{{body, fallback}, reader.field()};
   const auto field = reader.find(key);
   if (!field) return draft;
   draft.field = *field;
   if (std::holds_alternative<JsonValue::Object>(field->value->content)) {
-    draft.vertex = readVertex(*field, body, scene, reader.faults());
+    parseFoundAnchor(*field, scene, reader.faults(), draft);
   } else {
     draft.anchor.point = readVector(*field, kCoordinates, "m", reader.faults()).value_or(fallback);
   }
@@ -365,8 +379,9 @@ void checkCopies(const LinkDraft& draft, const Copies& copies, const SceneDraft&
   for (const AnchorDraft* end : {&draft.anchorA, &draft.anchorB}) {
     const bool isOnCopies = bodyOfCopy(end->anchor.body, copies, 0, scene).has_value();
     goesAlong = goesAlong || isOnCopies;
-    if (end->vertex && !isOnCopies)
+    if (end->isOfMesh() && !isOnCopies)
       addFault(faults, end->field, "a vertex of a body without copies cannot move along with them; give a point");
+    if (end->pick) addFault(faults, end->field, "what a pixel shows has no copies; give a point");
   }
   if (!goesAlong && !copies.ring && copies.spacing.isZero(0) && copies.total() > 1)
     addFault(faults, draft.field,

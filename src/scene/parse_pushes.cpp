@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/picked_points.h"
+
 namespace cradle {
 namespace {
 
@@ -14,38 +16,41 @@ Push::Ray parseRay(const Field& field, FaultList& faults) {
   return ray;
 }
 
-// A body point, or the ray that finds one.
-void parsePoint(ObjectReader& reader, Push& push) {
-  const auto point = reader.find("point"), ray = reader.find("ray");
+// A body point, the ray that finds one, or what a pixel shows.
+void parsePoint(ObjectReader& reader, Push& push, PushDraft& draft) {
+  const auto point = reader.find("point"), ray = reader.find("ray"), pick = reader.find("pick");
   if (point) push.target = readVector(*point, kCoordinates, "m", reader.faults()).value_or(Vec3::Zero());
   if (ray) push.target = parseRay(*ray, reader.faults());
-  if (point && ray) {
-    addFault(reader.faults(), *ray, "both point and ray are given; allowed is one of them");
-  } else if (!point && !ray) {
+  if (pick) draft.pick = parsePick(*pick, reader.faults());
+  const int given = (point ? 1 : 0) + (ray ? 1 : 0) + (pick ? 1 : 0);
+  if (given > 1) {
+    addFault(reader.faults(), ray ? *ray : *pick,
+             fmt::format("both {} are given; allowed is one of them", reader.keysFound({"point", "ray", "pick"})));
+  } else if (given == 0) {
     reader.addMissing(
-        {"point", "ray", "torque"},
-        "the push does not say where it acts; give \"point\" (of the body) or \"ray\" (of the world), or a "
-        "\"torque\"");
+        {"point", "ray", "pick", "torque"},
+        "the push does not say where it acts; give \"point\" (of the body), \"ray\" (of the world), \"pick\" (from a "
+        "picture), or a \"torque\"");
   }
 }
 
 // A torque, which needs no point, or a force at one.
-void parseAction(ObjectReader& reader, Push& push) {
+void parseAction(ObjectReader& reader, Push& push, PushDraft& draft) {
   const auto torque = reader.find("torque");
   if (!torque) {
-    parsePoint(reader, push);
+    parsePoint(reader, push, draft);
     push.force = reader.vector("force", kForces, "N", Vec3(0, 0, -3));
     return;
   }
   push.torque = readVector(*torque, kForces, "N m", reader.faults());
-  for (const char* key : {"force", "point", "ray"})
+  for (const char* key : {"force", "point", "ray", "pick"})
     if (const auto other = reader.find(key))
       addFault(reader.faults(), *other,
                fmt::format("both torque and {} are given; a torque acts on the whole body and has no {}", key, key));
 }
 
-/// False if it does not and may not be pushed: what else the push says is of no account then.
-bool checkThatItMoves(const Push& push, const Field& field, const Field& name, const Scene& scene, FaultList& faults) {
+/// A fault if it is moved by what it is told alone, and a warning if by nothing; at `name` or `field`.
+void checkThatItMoves(const Push& push, const Field& field, const Field& name, const Scene& scene, FaultList& faults) {
   const Body& body = scene.bodies[static_cast<std::size_t>(push.body)];
   if (body.motion == Motion::driven)
     addFault(faults, name,
@@ -54,18 +59,29 @@ bool checkThatItMoves(const Push& push, const Field& field, const Field& name, c
                          inQuotes(body.name)));
   if (body.motion == Motion::fixed)
     addWarning(faults, field, fmt::format("the push moves nothing, because body {} is static", inQuotes(body.name)));
-  return body.motion != Motion::driven;
 }
 
-Push parsePush(const Field& field, const SceneDraft& scene, FaultList& faults) {
+/// The body that a push names; nothing where it may be left out, for what is seen or met tells it.
+std::optional<int> parsePushedBody(ObjectReader& reader, const SceneDraft& scene) {
+  const auto isFound = [&](const char* key) { return reader.find(key).has_value(); };
+  const bool isTold = isFound("pick") || isFound("ray");
+  const auto name = isTold ? reader.find("body") : reader.require("body");
+  return name ? findNamed(*name, scene.bodyIndex, "body", reader.faults()) : std::nullopt;
+}
+
+Push parsePush(const Field& field, SceneDraft& scene, FaultList& faults) {
   Push push;
+  PushDraft draft;
+  draft.field = field;
   push.where = faults.where(field.place(), field.pointer);
   ObjectReader reader(field, faults);
-  const auto name = reader.require("body");
-  const auto body = name ? findNamed(*name, scene.bodyIndex, "body", faults) : std::nullopt;
-  push.body = body.value_or(kWorld);
-  if (push.body != kWorld && !checkThatItMoves(push, field, *name, scene.scene, faults)) return push;
-  parseAction(reader, push);
+  push.body = parsePushedBody(reader, scene).value_or(kWorld);
+  const auto name = reader.find("body");
+  draft.namesBody = name.has_value();
+  const std::size_t faultsBefore = faults.count();
+  if (push.body != kWorld) checkThatItMoves(push, field, *name, scene.scene, faults);
+  if (faults.count() != faultsBefore) return push;  // what else the push says is of no account
+  parseAction(reader, push, draft);
   push.start = reader.number("start", kInstants, "s", 0.5);
   push.duration = reader.number("duration", kPushDurations, "s", 0.02);
   reader.rejectUnknownKeys();
@@ -73,6 +89,8 @@ Push parsePush(const Field& field, const SceneDraft& scene, FaultList& faults) {
     addWarning(faults, reader.find("start").value_or(field),
                fmt::format("the push begins at {} s, when the run has ended ({} s), and moves nothing", push.start,
                            scene.scene.duration));
+  draft.push = scene.scene.pushes.size();
+  if (draft.pick || !draft.namesBody) scene.pushes.push_back(draft);
   return push;
 }
 
@@ -80,6 +98,31 @@ Push parsePush(const Field& field, const SceneDraft& scene, FaultList& faults) {
 
 void parsePushes(ObjectReader& root, SceneDraft& draft) {
   for (const Field& item : root.items("pushes")) draft.scene.pushes.push_back(parsePush(item, draft, root.faults()));
+}
+
+void completePushes(SceneDraft& draft, FaultList& faults) {
+  for (const PushDraft& found : draft.pushes) {
+    Push& push = draft.scene.pushes[found.push];
+    if (found.pick && found.namesBody) {
+      if (const auto point = pickedPoint(*found.pick, push.body, draft.scene, faults)) push.target = *point;
+      continue;
+    }
+    std::optional<Ray> ray;
+    if (found.pick)
+      ray = rayOf(*found.pick, draft.scene, faults);
+    else if (const auto* given = std::get_if<Push::Ray>(&push.target))
+      ray = Ray{given->origin, given->direction};
+    if (!ray) continue;
+    const std::optional<Anchor> met = firstMet(*ray, draft.scene);
+    if (!met) {
+      addFault(faults, found.field,
+               "no body is where the push points at the start of the scene; aim at one, or name it");
+      continue;
+    }
+    push.body = met->body;
+    if (found.pick) push.target = met->point;
+    checkThatItMoves(push, found.field, found.field, draft.scene, faults);
+  }
 }
 
 }  // namespace cradle

@@ -44,11 +44,30 @@ struct BodyDraft {
   int firstBody = 0, bodyCount = 0;  // its bodies in Scene::bodies
 };
 
-/// An end of a spring, rod, ... that may be a vertex of a mesh.
+/// A pixel of a picture, in place of the point that is seen there.
+struct PixelPick {
+  Field field;
+  int frame = 0;
+  double column = 0, row = 0;  // pixels, from the upper left one; whole numbers are centres
+};
+
+/// An end of a spring, rod, ... that may be a vertex of a mesh, or what a pixel shows.
 struct AnchorDraft {
   Anchor anchor;
-  Field field;                // the anchor, or the link if it says nothing of this end
-  std::optional<int> vertex;  // index into the solid's vertices
+  Field field;                         // the anchor, or the link if it says nothing of this end
+  std::optional<int> vertex = {};      // index into the solid's vertices
+  std::optional<Vec3> nearestTo = {};  // m, body's frame: the vertex that is nearest to it
+  std::optional<PixelPick> pick = {};
+
+  bool isOfMesh() const { return vertex || nearestTo; }
+};
+
+/// A push whose body or point follow from what is seen, or met by its ray, at the start.
+struct PushDraft {
+  std::size_t push = 0;  // index into Scene::pushes
+  Field field;
+  bool namesBody = false;
+  std::optional<PixelPick> pick;
 };
 
 /// A spring, rod, ... whose length may follow from where its ends are.
@@ -72,6 +91,7 @@ struct SceneDraft {
   std::vector<BodyDraft> bodies;
   std::vector<std::size_t> draftOfBody;  // for each of Scene::bodies
   std::vector<LinkDraft> links;
+  std::vector<PushDraft> pushes;                        // those that are still to be completed
   std::map<std::string, int> materialIndex, bodyIndex;  // by name
   std::map<int, TextureDraft> textures;                 // by material
 };

@@ -5,25 +5,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "mesh/ray_cast.h"
+#include "scene/ray_on_body.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
-
-std::optional<double> castRay(const Ray& ray, const Body& body, const Scene& scene) {
-  return std::visit(
-      [&](const auto& shape) -> std::optional<double> {
-        using Kind = std::decay_t<decltype(shape)>;
-        if constexpr (std::is_same_v<Kind, ModelShape>)
-          return cradle::castRay(ray, scene.models[static_cast<std::size_t>(shape.model)].solid);
-        else if constexpr (std::is_same_v<Kind, Plane>)
-          return std::nullopt;  // planes do not move
-        else
-          return cradle::castRay(ray, shape);
-      },
-      body.shape);
-}
 
 std::string missText(const Push& push, const Body& body, double time, const Vec3& center) {
   return fmt::format(

@@ -775,6 +775,50 @@ class Pictures(InTemporaryFolder):
             self.assertLess(float(error), 1e-6)  # of single precision
             self.assertEqual(float(flow) > 0.1, name == "box")
 
+    def test_pick_says_what_the_segmentation_has_and_what_it_prints_is_hit(self):
+        balls = [{"name": f"ball {i}", "shape": {"sphere": {"radius": 0.2}}, "position": [0.5 * i, 0, 0]} for i in range(3)]
+        path = self.write("p.json", scene(bodies=balls, springs=[{"bodyA": "ball 0", "anchorA": [0, 0, 0]}]))
+        self.assertEqual(cradle("render", path, "-o", self.path("f"), "--passes", "segmentation,depth", "--frames", "2").returncode, 0)
+        (height, width), ids = self.passes(self.path("f/segmentation_000002.npy"))
+        depths = self.passes(self.path("f/depth_000002.npy"))[1]
+        found = set()
+        for row in range(4, height, 5):
+            for column in range(2, width, 5):
+                text = cradle("pick", path, "--frame", "2", f"{column},{row}").stdout
+                name = re.search(r": (?:body \"(.*?)\"|an? (\w+)|the sky)\n", text)
+                expected = ids[row * width + column]
+                self.assertEqual({0: (None, None), 1: ("ball 0", None), 2: ("ball 1", None), 3: ("ball 2", None),
+                                  60000: (None, "spring")}[expected], name.groups(), text)
+                found.add(expected)
+                if name.group(1):
+                    depth = float(re.search(r"depth along the view +(\S+) m", text).group(1))
+                    self.assertAlmostEqual(depth / depths[row * width + column], 1, delta=1e-6)
+                    push = json.loads(re.search(r"^  (\{.*\})$", text, re.M).group(1))
+                    self.assertEqual(push["body"], name.group(1))
+                    self.assertAlmostEqual(sum(x * x for x in push["point"]), 0.04, delta=1e-12)
+        self.assertTrue({0, 1, 2, 3} <= found, found)
+        again = self.write("again.json", scene(bodies=balls, pushes=[{**push, "start": 0, "duration": 0.05}]))
+        self.assertEqual(cradle("check", again).returncode, 0)
+        self.refuses(2, ["99,0", "0,0 to 63,35"], "pick", path, "99,0")
+        self.refuses(2, ["found \"5\""], "pick", path, "5")
+        self.refuses(2, ["--frame", "0 to 6"], "pick", path, "1,1", "--frame", "7")
+
+    def test_inspect_lists_vertices_by_the_numbers_of_anchors(self):
+        prism = os.path.join(SOURCE, "assets", "l_prism.3ds")
+        listed = json.loads(cradle("inspect", prism, "--vertices", "--json").stdout)["vertices"][0]["list"]
+        self.assertEqual([entry["vertex"] for entry in listed], list(range(12)))
+        near = re.findall(r"vertex (\d+) .*  (\S+) away", cradle("inspect", prism, "--vertices", "--near", "-1,0,2").stdout)
+        distances = [sum((a - b) ** 2 for a, b in zip(entry["point"], (-1, 0, 2))) ** 0.5 for entry in listed]
+        self.assertEqual(len(near), 10)
+        self.assertEqual([int(number) for number, _ in near], sorted(range(12), key=lambda number: distances[number])[:10])
+        for number in (3, 8):  # a rod that is as long as its ends are apart says so
+            x, y, z = listed[number]["point"]
+            path = self.write("v.json", scene(bodies=[{"name": "b", "shape": {"mesh": prism}}],
+                                              rods=[{"bodyA": "b", "anchorA": {"vertex": number}, "anchorB": [x, y, z + 2], "length": 2}]))
+            self.assertIn("1 rod", cradle("check", path).stdout)
+        self.refuses(2, ["--near"], "inspect", prism, "--vertices", "--near", "1,2")
+        self.refuses(2, ["--vertices"], "inspect", prism, "--near", "1,2,3")
+
     def test_a_film_drawn_beside_its_simulation_is_that_of_the_trajectory_and_of_frames_drawn_apart(self):
         bodies = [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0.4, 0], "linearVelocity": [3, 0, 0]},
                   {"name": "ground", "shape": {"plane": {}}, "motion": "static"}]

@@ -200,6 +200,14 @@ TEST(MeshBody, VertexAnchorsAreItsVertices) {
   EXPECT_EQ(scene.rods.at(0).length, 4);
 }
 
+TEST(MeshBody, AnchorsAreTheVertexNearestToAPoint) {
+  const Scene scene = parse(meshScene("cube.3ds", R"(, "position": [0, 0, 10]}],
+    "rods": [{"bodyA": "a", "anchorA": {"nearestVertex": [0.2, 7, 0.6]}, "anchorB": [0, 1, 15])"))
+                          .scene;
+  EXPECT_EQ(scene.rods.at(0).anchorA.point, Vec3(0, 1, 1));
+  EXPECT_EQ(scene.rods.at(0).length, 4);
+}
+
 TEST(MeshBody, GapsOfItsJointsAreCheckedOnceItIsThere) {
   const Error error = errorOf(meshScene("cube.3ds", R"(}], "ballJoints": [{"bodyA": "a", "anchorB": [0, 0.1, 0])"));
   EXPECT_EQ(error.kind(), ErrorKind::scene);
