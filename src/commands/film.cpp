@@ -148,7 +148,7 @@ void makeFilm(const std::string& input, const std::string& film, const PictureOp
   FilmDrawer drawer(source, order);
   addTitleCard(source.scene(), order.size.width, order.size.height, encoder);
   drawFrames(
-      0, source.pictureCount(), progress, [&](long frame) { return drawer.draw(frame); },
+      framesIn({0, source.pictureCount()}), progress, [&](long frame) { return drawer.draw(frame); },
       [&](long, const Image& picture) { encoder.add(picture); });
   source.finish();
   encoder.finish();
@@ -178,7 +178,7 @@ void makeSideBySideFilm(const std::vector<std::string>& inputs, const std::strin
   addTitleCard(scene, picture.width, picture.height, encoder);
   Progress progress("Drawing", "pictures", count, quiet);
   drawFrames(
-      0, count, progress, [&](long frame) { return besideEachOther(parts, frame); },
+      framesIn({0, count}), progress, [&](long frame) { return besideEachOther(parts, frame); },
       [&](long, const Image& drawn) { encoder.add(drawn); });
   encoder.finish();
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "commands/drawing_memory.h"
 #include "commands/number_pair.h"
 #include "core/error.h"
@@ -61,6 +63,12 @@ Image FilmDrawer::draw(long number) {
     drawCaptions(source_.drawnScene(), frame, {camera, image.width, image.height},
                  overlay_ ? overlay_->upperPanels(image.width, image.height) : std::vector<PicturePart>(), image);
   return image;
+}
+
+std::vector<long> framesIn(const FrameRange& range) {
+  std::vector<long> frames(static_cast<std::size_t>(range.end - range.first));
+  std::iota(frames.begin(), frames.end(), range.first);
+  return frames;
 }
 
 }  // namespace cradle

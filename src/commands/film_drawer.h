@@ -4,8 +4,10 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "commands/film_view.h"
+#include "commands/frame_folder.h"
 #include "commands/pictures.h"
 #include "commands/trajectory_source.h"
 #include "core/interruption.h"
@@ -45,19 +47,23 @@ class FilmDrawer {
   std::optional<FilmOverlay> overlay_;
 };
 
-/// Draws frames from `first` on to before `end` in order, and hands on what draw(frame) gives, to take(frame, drawn),
-/// in a thread beside the drawing of the next one.
+/// All frames of a range.
+std::vector<long> framesIn(const FrameRange& range);
+
+/// Draws frames in ascending order, and hands on what draw(frame) gives, to take(frame, drawn), in a thread beside the
+/// drawing of the next one.
 template <class Draw, class Take>
-void drawFrames(long first, long end, Progress& progress, const Draw& draw, const Take& take) {
+void drawFrames(const std::vector<long>& frames, Progress& progress, const Draw& draw, const Take& take) {
   std::future<void> taken;
-  for (long frame = first; frame < end; ++frame) {
+  long done = 0;
+  for (const long frame : frames) {
     throwIfInterrupted();
     auto drawn = draw(frame);
     if (taken.valid()) taken.get();
     taken = std::async(std::launch::async, [&take, frame, drawn = std::move(drawn)] { take(frame, drawn); });
-    progress.update(frame - first + 1);
+    progress.update(++done);
   }
-  taken.get();
+  if (taken.valid()) taken.get();
 }
 
 }  // namespace cradle

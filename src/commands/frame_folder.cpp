@@ -70,9 +70,26 @@ std::string frameFileName(const FrameFile& file) {
   return fmt::format("{}_{:06}{}", file.kind, file.frame, endingOf(file.kind));
 }
 
+void requireFramesAlone(const std::string& folder) {
+  requireOwnFolder(folder, "frame", isOurs);
+}
+
+std::vector<long> framesToDraw(const std::string& folder, const FrameRange& range,
+                               const std::vector<std::string>& kinds) {
+  std::vector<long> frames;
+  const auto isThere = [&](const std::string& kind) {
+    return fs::exists(fs::path(folder) / frameFileName({kind, frames.back()}));
+  };
+  for (long frame = range.first; frame < range.end; ++frame) {
+    frames.push_back(frame);
+    if (std::all_of(kinds.begin(), kinds.end(), isThere)) frames.pop_back();
+  }
+  return frames;
+}
+
 void requireRoom(const std::string& folder, const FrameRange& range, const std::vector<std::string>& kinds,
                  bool overwrites) {
-  requireOwnFolder(folder, "frame", isOurs);
+  requireFramesAlone(folder);
   const std::vector<FrameFile> there = filesIn(folder, range, kinds);
   if (there.empty() || overwrites) return;
   throw Error(

@@ -24,6 +24,13 @@ struct FrameRange {
 };
 constexpr long kMaxFrames = 1'000'000;  // that file names have digits for
 
+/// Refuses, with Error(output), a folder with others' files.
+void requireFramesAlone(const std::string& folder);
+
+/// The frames of a range of which a folder lacks a file of one of these kinds, ascending.
+std::vector<long> framesToDraw(const std::string& folder, const FrameRange& range,
+                               const std::vector<std::string>& kinds);
+
 /// Refuses, with Error(output), a folder with others' files, and, unless `overwrites`, one with files of these kinds
 /// and frames.
 void requireRoom(const std::string& folder, const FrameRange& range, const std::vector<std::string>& kinds,

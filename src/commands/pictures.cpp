@@ -60,8 +60,23 @@ void takeFolder(const std::string& folder, const std::optional<FrameRange>& rang
                 const std::vector<std::string>& kinds, std::optional<FolderLock>& lock) {
   std::error_code missing;
   if (lock) return;
-  if (fs::is_directory(folder, missing)) lock.emplace(folder, options.frames ? FolderUse::shared : FolderUse::alone);
-  requireRoom(folder, range.value_or(FrameRange{0, kMaxFrames}), kinds, options.overwrite);
+  const FolderUse use = options.frames || options.shard ? FolderUse::shared : FolderUse::alone;
+  if (fs::is_directory(folder, missing)) lock.emplace(folder, use);
+  if (options.skipExisting || (options.shard && !range))  // frames of a part are known with the film
+    requireFramesAlone(folder);
+  else
+    requireRoom(folder, range.value_or(FrameRange{0, kMaxFrames}), kinds, options.overwrite);
+}
+
+/// The frames of one of several parts that are as long as each other, but for one frame.
+FrameRange shardOf(const FrameRange& range, const std::optional<std::string>& text) {
+  if (!text) return range;
+  const auto shard = parsePair(*text, '/');
+  if (!shard || shard->first < 1 || shard->first > shard->second || shard->second > kMaxFrames)
+    throw Error(ErrorKind::usage, "--shard",
+                fmt::format("found \"{}\"; allowed is PART/PARTS with 1 <= PART <= PARTS, as 2/8", *text));
+  const long count = range.end - range.first;
+  return {range.first + (shard->first - 1) * count / shard->second, range.first + shard->first * count / shard->second};
 }
 
 void writeFile(const fs::path& path, const std::string& bytes) {
@@ -112,11 +127,15 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
   const std::vector<std::string> kinds = kindsOf(passes);
   std::optional<ResultFolder> made;  // outlives the lock
   std::optional<FolderLock> lock;
-  takeFolder(folder, parseRange(options.frames, kMaxFrames), options, kinds, lock);
+  shardOf({0, 1}, options.shard);
+  if (options.skipExisting && options.overwrite)
+    throw Error(ErrorKind::usage, "--skip-existing", "goes without --overwrite: frames are kept or replaced");
+  takeFolder(folder, options.shard ? std::nullopt : parseRange(options.frames, kMaxFrames), options, kinds, lock);
   if (options.overlay) parseOverlays(*options.overlay);
   TrajectorySource source(input, quiet, {.assetRoot = options.assetRoot});
   const PictureOrder order(options, source.scene());
-  const FrameRange range = parseFrames(options.frames, source);
+  const FrameRange range = shardOf(parseFrames(options.frames, source), options.shard);
+  if (options.shard && !options.skipExisting) requireRoom(folder, range, kinds, options.overwrite);
   requireNoOthers(folder, source.frameCount());
   source.simulate();
   requireDrawingMemory(order.size.width, order.size.height);  // of what is left
@@ -129,9 +148,10 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
   takeFolder(folder, range, options, kinds, lock);
   if (truth)
     for (const FileBytes& file : truth->filesOfFilm()) writeShared(fs::path(folder) / file.name, file.bytes);
-  Progress progress("Drawing", "pictures", range.end - range.first, quiet);
+  const std::vector<long> frames = options.skipExisting ? framesToDraw(folder, range, kinds) : framesIn(range);
+  Progress progress("Drawing", "pictures", std::ssize(frames), quiet);
   drawFrames(
-      range.first, range.end, progress,
+      frames, progress,
       [&](long frame) {
         FrameResult result;
         if (drawer) result.picture = drawer->draw(frame);

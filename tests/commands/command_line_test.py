@@ -750,6 +750,40 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(set(self.passes(self.path("f/segmentation_000005.npy"))[1]), {0, 1})
         self.assertEqual(len(json.loads(content(self.path("f/camera.json")))["frames"]), 7)
 
+    def test_parts_of_a_film_are_named_by_their_number(self):
+        cradle("simulate", self.scene, "-o", self.path("t.sqlite"))
+        command = [PROGRAM, "render", self.path("t.sqlite"), "-o", self.path("f"), "--passes", "rgb,depth"]
+        runs = [subprocess.Popen([*command, "--shard", f"{i}/4"], stderr=subprocess.PIPE, text=True) for i in (3, 1, 4, 2)]
+        for process in runs:
+            _, stderr = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 0, stderr)
+        names = [f"{kind}_{i:06}.{ending}" for i in range(6) for kind, ending in (("frame", "png"), ("depth", "npy"), ("instances", "json"))]
+        self.assertEqual(sorted(os.listdir(self.path("f"))), sorted(names + ["camera.json", "events.json"]))
+        # Parts differ by a frame at most, and more of them than frames leave some without any.
+        for parts, sizes in ((4, [1, 1, 2, 2]), (8, [0, 0, 1, 1, 1, 1, 1, 1])):
+            found = []
+            for part in range(1, parts + 1):
+                folder = self.path(f"part{parts}_{part}")
+                self.assertEqual(cradle("render", self.path("t.sqlite"), "-o", folder, "--shard", f"{part}/{parts}").returncode, 0)
+                found.append(sorted(os.listdir(folder)) if os.path.isdir(folder) else [])
+            self.assertEqual(sorted(map(len, found)), sizes)
+            self.assertEqual(sum(found, []), [f"frame_{i:06}.png" for i in range(6)])
+        for shard in ("0/2", "3/2", "1", "a/b", "1/0"):
+            self.refuses(2, ["--shard", shard, "PART/PARTS"], "render", self.path("t.sqlite"), "-o", self.path("g"), "--shard", shard)
+        self.refuses(5, ["frame_000000.png"], "render", self.path("t.sqlite"), "-o", self.path("f"), "--shard", "1/2")
+
+    def test_frames_that_are_there_may_be_skipped(self):
+        command = ["render", self.scene, "-o", self.path("f"), "--passes", "rgb,depth"]
+        self.assertEqual(cradle(*command, "--frames", "0:3").returncode, 0)
+        os.remove(self.path("f/depth_000001.npy"))
+        old = {name: os.stat(self.path("f/" + name)).st_mtime_ns for name in os.listdir(self.path("f"))}
+        self.assertEqual(cradle(*command, "--skip-existing").returncode, 0)
+        self.assertEqual(len(os.listdir(self.path("f"))), 6 * 3 + 2)
+        again = {name for name, time_ in old.items() if os.stat(self.path("f/" + name)).st_mtime_ns != time_}
+        self.assertEqual(again, {"frame_000001.png", "instances_000001.json"})
+        self.assertEqual(cradle(*command, "--skip-existing").returncode, 0)  # nothing is left to do
+        self.refuses(2, ["--skip-existing", "--overwrite"], *command, "--skip-existing", "--overwrite")
+
     def test_passes_that_are_there_are_refused_by_kind(self):
         self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--passes", "depth").returncode, 0)
         self.assertEqual(cradle("render", self.scene, "-o", self.path("f")).returncode, 0)  # pictures are others
