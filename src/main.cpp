@@ -193,6 +193,10 @@ void addPictures(CLI::App& app, CommandLine& line) {
   render->add_option("--passes", line.pictures.passes,
                      "what is written of each frame, with commas: rgb (default), depth, normal, segmentation, flow, "
                      "backwardFlow, objectCoordinates, or all");
+  render
+      ->add_option("--pass-format", line.pictures.passFormat,
+                   "npy: a NumPy file of each pass; exr: an OpenEXR file of each frame, with a layer of each pass")
+      ->capture_default_str();
   render->add_option("--shard", line.pictures.shard, "PART/PARTS: one of so many parts of the frames, from 1/PARTS on");
   render->add_flag("--skip-existing", line.pictures.skipExisting,
                    "leave frames as they are that are in the folder already");

@@ -18,11 +18,13 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 2> kFilmFiles = {"camera.json", "events.json"};  // of a whole film
 
 std::string endingOf(const std::string& kind) {
-  return kind == kPictureKind ? ".png" : kind == kInstancesKind ? ".json" : ".npy";
+  if (kind == kPictureKind) return ".png";
+  if (kind == kInstancesKind) return ".json";
+  return kind == kPassesKind ? ".exr" : ".npy";
 }
 
 std::vector<std::string> allKinds() {
-  std::vector<std::string> kinds = {kPictureKind, kHiddenKind, kInstancesKind};
+  std::vector<std::string> kinds = {kPictureKind, kHiddenKind, kInstancesKind, kPassesKind};
   for (const Pass pass : parsePasses("all")) kinds.emplace_back(nameOf(pass));
   return kinds;
 }

@@ -8,7 +8,8 @@ namespace cradle {
 
 // Folders of pictures, and of what is known of them.
 
-inline const std::string kPictureKind = "frame", kHiddenKind = "hidden", kInstancesKind = "instances";
+inline const std::string kPictureKind = "frame", kHiddenKind = "hidden", kInstancesKind = "instances",
+                         kPassesKind = "passes";
 
 /// A file of one frame: a picture, a pass by its name, or what goes with passes.
 struct FrameFile {
@@ -16,7 +17,7 @@ struct FrameFile {
   long frame = 0;
 };
 
-/// KIND_000000.png of pictures, .json of instances, else .npy.
+/// KIND_000000.png of pictures, .json of instances, .exr of passes in one file, else .npy.
 std::string frameFileName(const FrameFile& file);
 
 struct FrameRange {

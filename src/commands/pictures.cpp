@@ -104,14 +104,26 @@ void writeShared(const fs::path& path, const std::string& bytes) {
 }
 
 /// The kinds of files that a run writes for each frame.
-std::vector<std::string> kindsOf(const std::vector<Pass>& passes) {
+std::vector<std::string> kindsOf(const std::vector<Pass>& passes, PassFormat format) {
   std::vector<std::string> kinds;
+  if (std::find(passes.begin(), passes.end(), Pass::rgb) != passes.end()) kinds.push_back(kPictureKind);
+  if (passes == std::vector{Pass::rgb}) return kinds;
+  kinds.push_back(kInstancesKind);
+  if (format == PassFormat::exr) {
+    kinds.push_back(kPassesKind);
+    return kinds;
+  }
   for (const Pass pass : passes) {
-    kinds.push_back(pass == Pass::rgb ? kPictureKind : nameOf(pass));
+    if (pass != Pass::rgb) kinds.emplace_back(nameOf(pass));
     if (pass == Pass::flow) kinds.push_back(kHiddenKind);
   }
-  if (passes != std::vector{Pass::rgb}) kinds.push_back(kInstancesKind);
   return kinds;
+}
+
+PassFormat parseFormat(const std::string& text) {
+  if (text == "npy") return PassFormat::npy;
+  if (text == "exr") return PassFormat::exr;
+  throw Error(ErrorKind::usage, "--pass-format", fmt::format("found \"{}\"; allowed are npy and exr", text));
 }
 
 /// All that is known of a frame, as it goes into files.
@@ -124,7 +136,8 @@ struct FrameResult {
 
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet) {
   const std::vector<Pass> passes = options.passes ? parsePasses(*options.passes) : std::vector{Pass::rgb};
-  const std::vector<std::string> kinds = kindsOf(passes);
+  const PassFormat format = parseFormat(options.passFormat);
+  const std::vector<std::string> kinds = kindsOf(passes, format);
   std::optional<ResultFolder> made;  // outlives the lock
   std::optional<FolderLock> lock;
   shardOf({0, 1}, options.shard);
@@ -143,7 +156,8 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
   std::optional<FilmDrawer> drawer;
   if (std::find(passes.begin(), passes.end(), Pass::rgb) != passes.end()) drawer.emplace(source, order, view);
   std::optional<TruthFilm> truth;
-  if (passes != std::vector{Pass::rgb}) truth.emplace(source, view, order.size.width, order.size.height, passes);
+  if (passes != std::vector{Pass::rgb})
+    truth.emplace(source, view, order.size.width, order.size.height, passes, format);
   made.emplace(folder);
   takeFolder(folder, range, options, kinds, lock);
   if (truth)

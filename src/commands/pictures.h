@@ -13,6 +13,7 @@ struct PictureOptions {
   std::optional<std::string> shaders;  // folder
   std::string assetRoot;               // folder that a scene's meshes must be below; empty: they may be anywhere
   std::optional<std::string> passes;   // of `render`, as parsePasses() reads it; unset: rgb
+  std::string passFormat = "npy";      // of `render`: npy or exr
   std::optional<std::string> shard;    // of `render`, "PART/PARTS", from 1/PARTS on: of the frames
   bool skipExisting = false;           // of `render`
   bool overwrite = false;              // of `render`

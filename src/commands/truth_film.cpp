@@ -8,15 +8,16 @@
 #include "core/error.h"
 #include "core/interruption.h"
 #include "render/body_place.h"
-#include "truth/npy.h"
 
 namespace cradle {
 
-TruthFilm::TruthFilm(TrajectorySource& source, const View& view, int width, int height, const std::vector<Pass>& passes)
+TruthFilm::TruthFilm(TrajectorySource& source, const View& view, int width, int height, const std::vector<Pass>& passes,
+                     PassFormat format)
     : source_(source),
       width_(width),
       height_(height),
       passes_(passes),
+      format_(format),
       surfaces_(source.drawnScene(), view),
       camera_(cameraOf(source, view)) {
   const std::size_t bodies = source.scene().bodies.size();
@@ -56,34 +57,42 @@ Pinhole TruthFilm::inSceneWorld(long frame) {
   return {camera, width_, height_};
 }
 
-std::vector<FileBytes> TruthFilm::filesOf(long frame) {
-  std::erase_if(nearby_, [frame](const auto& entry) { return entry.first < frame - 1 || entry.first > frame + 1; });
+std::vector<PassArray> TruthFilm::passesOf(long frame, std::vector<std::uint16_t> segmentation) {
   FrameRays& seen = raysOf(frame);
-  const std::size_t height = static_cast<std::size_t>(height_), width = static_cast<std::size_t>(width_);
-  std::vector<FileBytes> files;
-  const auto add = [&](const std::string& kind, const auto& numbers, std::size_t channels) {
-    std::vector<std::size_t> shape = {height, width};
-    if (channels > 1) shape.push_back(channels);
-    files.push_back({frameFileName({kind, frame}), npyBytes(numbers, shape)});
+  std::vector<PassArray> arrays;
+  const auto add = [&](const std::string& name, int channels, auto numbers) {
+    arrays.push_back({name, channels, std::move(numbers)});
   };
   const auto flowTo = [&](long other, bool findsHidden) {
     if (isThere(other)) return flowPass(seen, raysOf(other), findsHidden);
-    return Flow{std::vector<float>(2 * height * width, std::numeric_limits<float>::quiet_NaN()),
-                std::vector<std::uint8_t>(height * width, 1)};
+    return Flow{std::vector<float>(2 * segmentation.size(), std::numeric_limits<float>::quiet_NaN()),
+                std::vector<std::uint8_t>(segmentation.size(), 1)};
   };
-  const std::vector<std::uint16_t> segmentation = segmentationPass(seen);
-  if (has(Pass::depth)) add(nameOf(Pass::depth), depthPass(seen), 1);
-  if (has(Pass::normal)) add(nameOf(Pass::normal), normalPass(seen, source_.worldFromDrawn()), 3);
-  if (has(Pass::segmentation)) add(nameOf(Pass::segmentation), segmentation, 1);
+  if (has(Pass::depth)) add(nameOf(Pass::depth), 1, depthPass(seen));
+  if (has(Pass::normal)) add(nameOf(Pass::normal), 3, normalPass(seen, source_.worldFromDrawn()));
   if (has(Pass::flow)) {
-    const Flow flow = flowTo(frame + 1, true);
-    add(nameOf(Pass::flow), flow.shift, 2);
-    add(kHiddenKind, flow.isHidden, 1);
+    Flow flow = flowTo(frame + 1, true);
+    add(nameOf(Pass::flow), 2, std::move(flow.shift));
+    add(kHiddenKind, 1, std::move(flow.isHidden));
   }
-  if (has(Pass::backwardFlow)) add(nameOf(Pass::backwardFlow), flowTo(frame - 1, false).shift, 2);
-  if (has(Pass::objectCoordinates)) add(nameOf(Pass::objectCoordinates), objectCoordinatesPass(seen), 3);
+  if (has(Pass::backwardFlow)) add(nameOf(Pass::backwardFlow), 2, flowTo(frame - 1, false).shift);
+  if (has(Pass::objectCoordinates)) add(nameOf(Pass::objectCoordinates), 3, objectCoordinatesPass(seen));
+  if (has(Pass::segmentation)) add(nameOf(Pass::segmentation), 1, std::move(segmentation));
+  return arrays;
+}
+
+std::vector<FileBytes> TruthFilm::filesOf(long frame) {
+  std::erase_if(nearby_, [frame](const auto& entry) { return entry.first < frame - 1 || entry.first > frame + 1; });
+  const std::vector<std::uint16_t> segmentation = segmentationPass(raysOf(frame));
+  const std::vector<PassArray> passes = passesOf(frame, segmentation);
+  std::vector<FileBytes> files;
+  if (format_ == PassFormat::exr)
+    files.push_back({frameFileName({kPassesKind, frame}), exrBytes(passes, width_, height_)});
+  else
+    for (const PassArray& pass : passes)
+      files.push_back({frameFileName({pass.name, frame}), npyBytes(pass, width_, height_)});
   std::string instances =
-      instancesJson(source_.scene(), source_.frameAt(frame), seen.wholes(), {segmentation, width_, height_});
+      instancesJson(source_.scene(), source_.frameAt(frame), raysOf(frame).wholes(), {segmentation, width_, height_});
   files.push_back({frameFileName({kInstancesKind, frame}), std::move(instances)});
   return files;
 }

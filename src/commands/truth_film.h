@@ -7,6 +7,7 @@
 
 #include "commands/film_view.h"
 #include "commands/trajectory_source.h"
+#include "truth/pass_files.h"
 #include "truth/passes.h"
 #include "truth/truth_json.h"
 
@@ -17,12 +18,16 @@ struct FileBytes {
   std::string name, bytes;
 };
 
+/// A NumPy file of each pass, or an OpenEXR file with a layer of each.
+enum class PassFormat { npy, exr };
+
 /// Ground truth of a film: what its pixels show, as files.
 class TruthFilm {
  public:
   /// `source` is simulated, or beside this object, and must outlive it. Throws Error(limit) for more bodies than passes
   /// can tell apart.
-  TruthFilm(TrajectorySource& source, const View& view, int width, int height, const std::vector<Pass>& passes);
+  TruthFilm(TrajectorySource& source, const View& view, int width, int height, const std::vector<Pass>& passes,
+            PassFormat format = PassFormat::npy);
 
   /// What is seen in a frame, in the drawn world. Throws as finding its camera does. It goes when a frame that is not
   /// beside it is asked for by filesOf().
@@ -36,6 +41,7 @@ class TruthFilm {
 
  private:
   bool has(Pass pass) const;
+  std::vector<PassArray> passesOf(long frame, std::vector<std::uint16_t> segmentation);
   bool isThere(long frame) const { return frame >= 0 && frame < source_.frameCount(); }
   const Camera& cameraAt(long frame);
   Pinhole inSceneWorld(long frame);
@@ -43,6 +49,7 @@ class TruthFilm {
   TrajectorySource& source_;
   int width_, height_;
   std::vector<Pass> passes_;
+  PassFormat format_;
   SurfaceSource surfaces_;
   FilmCamera camera_;
   std::vector<Camera> cameras_;                        // of frames so far, in the drawn world

@@ -772,6 +772,14 @@ class Pictures(InTemporaryFolder):
             self.refuses(2, ["--shard", shard, "PART/PARTS"], "render", self.path("t.sqlite"), "-o", self.path("g"), "--shard", shard)
         self.refuses(5, ["frame_000000.png"], "render", self.path("t.sqlite"), "-o", self.path("f"), "--shard", "1/2")
 
+    def test_passes_of_a_frame_may_be_one_openexr_file(self):
+        self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--passes", "all", "--pass-format", "exr").returncode, 0)
+        names = [f"{kind}_{i:06}.{ending}" for i in range(6) for kind, ending in (("frame", "png"), ("passes", "exr"), ("instances", "json"))]
+        self.assertEqual(sorted(os.listdir(self.path("f"))), sorted(names + ["camera.json", "events.json"]))
+        self.assertEqual(content(self.path("f/passes_000000.exr"))[:4], b"\x76\x2f\x31\x01")
+        self.refuses(2, ["--pass-format", "npy and exr"], "render", self.scene, "-o", self.path("g"), "--passes", "all", "--pass-format", "tiff")
+        self.refuses(5, ["passes_000005.exr"], "render", self.scene, "-o", self.path("f"), "--passes", "depth", "--pass-format", "exr")
+
     def test_frames_that_are_there_may_be_skipped(self):
         command = ["render", self.scene, "-o", self.path("f"), "--passes", "rgb,depth"]
         self.assertEqual(cradle(*command, "--frames", "0:3").returncode, 0)

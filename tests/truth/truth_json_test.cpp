@@ -7,14 +7,12 @@
 
 #include "math/rotation.h"
 #include "render/camera.h"
-#include "truth/npy.h"
 #include "truth/truth_scene.h"
 
 namespace cradle {
 namespace {
 
 using testing::ElementsAre;
-using testing::StartsWith;
 
 TEST(TruthJson, RunLengthsGoDownTheColumnsAndBeginOutside) {
   const std::vector<std::uint16_t> ids = {7, 7, 0,   //
@@ -89,18 +87,6 @@ TEST(TruthJson, InstancesHaveWhatIsSeenAndWhatThereIs) {
   for (const long run : back["segmentation"]["counts"]) sum += run;
   EXPECT_EQ(sum, 1600);
   EXPECT_THAT(back["segmentation"]["size"], ElementsAre(40, 40));
-}
-
-TEST(Npy, HasTheHeaderOfItsFormat) {
-  const std::string bytes = npyBytes(std::vector<float>{1, 2, 3, 4, 5, 6}, {3, 2});
-  ASSERT_THAT(bytes, StartsWith(std::string("\x93NUMPY\x01\x00", 8)));
-  const std::size_t length = static_cast<unsigned char>(bytes[8]) + 256U * static_cast<unsigned char>(bytes[9]);
-  EXPECT_EQ((10 + length) % 64, 0U);
-  EXPECT_EQ(bytes.size(), 10 + length + 24);
-  EXPECT_EQ(bytes[9 + length], '\n');
-  EXPECT_THAT(bytes.substr(10), StartsWith("{'descr': '<f4', 'fortran_order': False, 'shape': (3, 2), }"));
-  EXPECT_THAT(npyBytes(std::vector<std::uint16_t>{1, 2}, {1, 2}).substr(10), StartsWith("{'descr': '<u2'"));
-  EXPECT_THAT(npyBytes(std::vector<std::uint8_t>{1, 2}, {1, 2}).substr(10), StartsWith("{'descr': '|u1'"));
 }
 
 }  // namespace
