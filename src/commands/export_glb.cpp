@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "commands/film_view.h"
 #include "commands/glb_joints.h"
 #include "commands/trajectory_source.h"
 #include "core/crash.h"
@@ -13,9 +14,10 @@
 #include "core/interruption.h"
 #include "core/progress.h"
 #include "math/rotation.h"
+#include "render/appearance.h"
 #include "render/body_place.h"
+#include "render/camera.h"
 #include "render/link_items.h"
-#include "render/upright.h"
 #include "scene/count_bodies.h"
 
 namespace cradle {
@@ -49,21 +51,25 @@ DrawnMesh square() {
   return mesh;
 }
 
+RigidTransform poseOf(const Camera& camera) {
+  return {Quat(cameraAxes(camera)), camera.position};
+}
+
 class GlbExport {
  public:
-  GlbExport(const TrajectoryReader& reader, const std::string& path)
-      : reader_(reader),
+  /// `source` has a whole trajectory, and must outlive this object. The y axis of glTF is up, as in pictures.
+  GlbExport(TrajectorySource& source, const std::string& path)
+      : source_(source),
+        reader_(source.reader()),
         path_(path),
-        uprightFromWorld_(uprightFromWorld(sceneOf(reader))),
-        scene_(turned(uprightFromWorld_, sceneOf(reader))),
+        scene_(source.drawnScene()),
         file_(scene_.name),
-        meshes_(reader.header(), scene_, file_) {}
+        meshes_(reader_.header(), scene_, file_) {}
 
   void build(bool quiet);
   void write(PartFile& file) { file_.write(path_, file); }
 
  private:
-  Frame readFrame(long number) const { return turned(uprightFromWorld_, reader_.readFrame(number)); }
   std::size_t frameCount() const { return reader_.frameTimes().size(); }
   void requireFits() const;
   void addTimes();
@@ -72,15 +78,18 @@ class GlbExport {
   void addLinks(const Links& links, const std::string& material, const Surface& surface);
   void addFrame(const Frame& frame);
   void addPlanes();
+  void addCamera();
+  void followCamera(const Frame& frame);
+  void addLights();
   Track addTrack(int node);
   void setPose(std::size_t frame, const Vec3& position, const Quat& orientation, Track& track);
   void setLink(std::size_t frame, const std::vector<RigidTransform>& places, Link& link);
   double linkRadius() const;
 
+  TrajectorySource& source_;
   const TrajectoryReader& reader_;
   const std::string path_;
-  const Quat uprightFromWorld_;  // the y axis of glTF is up
-  const Scene scene_;
+  const Scene& scene_;
   GlbFile file_;
   GlbMeshes meshes_;
   int times_ = 0;
@@ -90,6 +99,9 @@ class GlbExport {
   Bounds bounds_;  // m, world, of bodies at the start, and then of their places
   double linkRadius_ = 0;
   std::optional<GlbJoints> joints_;  // always there once links are
+  std::optional<FilmCamera> camera_;
+  RigidTransform cameraPose_;
+  std::optional<Track> cameraTrack_;  // if it moves
 };
 
 /// Before memory is taken. What else is in the file is little, and counted when it is written.
@@ -189,6 +201,7 @@ void GlbExport::addFrame(const Frame& frame) {
     bounds_.extend(state.position);
   }
   joints_->follow(frame);
+  if (cameraTrack_) followCamera(frame);
   if (links_.empty()) return;
   const std::vector<RigidTransform> places = placeBodies(scene_, frame);
   for (Link& link : links_) setLink(number, places, link);
@@ -210,21 +223,54 @@ void GlbExport::addPlanes() {
   }
 }
 
+/// The one of the pictures: it looks along its -z axis, with y up. It moves where the scene says so.
+void GlbExport::addCamera() {
+  const Output& output = scene_.output;
+  camera_.emplace(cameraOf(source_, viewOf(source_, output.width, output.height)));
+  const Camera start = camera_->at(source_.drawnFrameAt(0));
+  cameraPose_ = poseOf(start);
+  const int node = file_.addNode("camera", cameraPose_);
+  file_.setCamera(node, start.verticalFieldOfView, static_cast<double>(output.width) / output.height);
+  if (scene_.camera && !scene_.cameraMotion.isNone()) cameraTrack_ = addTrack(node);
+}
+
+/// A camera that comes to be inside of a body, which no picture is seen from, stays where it was.
+void GlbExport::followCamera(const Frame& frame) {
+  try {
+    cameraPose_ = poseOf(camera_->at(frame));
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::scene) throw;
+  }
+  setPose(static_cast<std::size_t>(frame.number), cameraPose_.translation, cameraPose_.rotation, *cameraTrack_);
+}
+
+/// They shine along their -z axes.
+void GlbExport::addLights() {
+  for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+    const Light& light = scene_.lights[i];
+    const int node =
+        file_.addNode(fmt::format("light{}", i), {rotationBetween(-Vec3::UnitZ(), light.direction), Vec3::Zero()});
+    file_.setLight(node, linearFromSrgb(light.color), light.intensity);
+  }
+}
+
 void GlbExport::build(bool quiet) {
   requireFits();
   addTimes();
-  addBodies(placeBodies(scene_, readFrame(0)));
+  addBodies(placeBodies(scene_, source_.drawnFrameAt(0)));
   linkRadius_ = linkRadius();
   addLinks(scene_.springs, "spring", kDarkSteel);
   addLinks(scene_.rods, "rod", kSteel);
   addLinks(scene_.ropes, "rope", kHemp);
   joints_.emplace(scene_, bodyNodes_, linkRadius_, file_, meshes_);
   joints_->add();
+  addCamera();
+  addLights();
 
   Progress progress("Exporting", "frames", reader_.frameCount(), quiet);
   for (long number = 0; number < reader_.frameCount(); ++number) {
     throwIfInterrupted();
-    addFrame(readFrame(number));
+    addFrame(source_.drawnFrameAt(number));
     progress.update(number + 1);
   }
   joints_->addRails();
@@ -233,10 +279,11 @@ void GlbExport::build(bool quiet) {
 
 }  // namespace
 
-void exportGlb(const TrajectoryReader& reader, const std::string& path, bool quiet) {
+void exportGlb(TrajectoryReader reader, const std::string& path, bool quiet) {
   PartFile file(path);
   const EndWithoutMemory end;  // nlohmann's documents ask for memory when they go
-  GlbExport glb(reader, path);
+  TrajectorySource source(std::move(reader), quiet);
+  GlbExport glb(source, path);
   glb.build(quiet);
   glb.write(file);
   file.complete();

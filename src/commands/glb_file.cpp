@@ -177,6 +177,23 @@ void GlbFile::setMesh(int node, int mesh) {
   document_->node(node)["mesh"] = mesh;
 }
 
+void GlbFile::setCamera(int node, double verticalFieldOfView, double aspectRatio) {
+  constexpr double kNearPlane = 0.01;  // m; the format asks for one, and without a far one it reaches infinitely far
+  Json& cameras = document_->json["cameras"];
+  document_->node(node)["camera"] = cameras.size();
+  cameras.push_back(
+      {{"type", "perspective"},
+       {"perspective", {{"yfov", verticalFieldOfView}, {"aspectRatio", aspectRatio}, {"znear", kNearPlane}}}});
+}
+
+void GlbFile::setLight(int node, const Vec3f& color, double intensity) {
+  constexpr const char* kExtension = "KHR_lights_punctual";
+  document_->json["extensionsUsed"] = Json::array({kExtension});
+  Json& lights = document_->json["extensions"][kExtension]["lights"];
+  document_->node(node)["extensions"][kExtension]["light"] = lights.size();
+  lights.push_back({{"type", "directional"}, {"color", floatsOf(color)}, {"intensity", intensity}});
+}
+
 void GlbFile::setScale(int node, const Vec3& scale) {
   document_->node(node)["scale"] = floatsOf(scale);
 }

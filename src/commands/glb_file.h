@@ -46,6 +46,10 @@ class GlbFile {
   /// A node of the scene, or of the node `parent`.
   int addNode(const std::string& name, const RigidTransform& parentFromNode, int parent = kNoParent);
   void setMesh(int node, int mesh);
+  /// A perspective camera that looks along the node's -z axis, y up; rad, and width over height.
+  void setCamera(int node, double verticalFieldOfView, double aspectRatio);
+  /// A light from infinitely far along the node's -z axis (KHR_lights_punctual); linear colour, 0..1.
+  void setLight(int node, const Vec3f& color, double intensity);
   void setScale(int node, const Vec3& scale);  // along the node's axes
 
   /// Lets `values`, one for each of `times` (s; set, and ascending), be the node's "translation", "rotation" (x, y, z,

@@ -89,6 +89,10 @@ TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool qu
   frameCount_ = lastFrame(scene_) + 1;
 }
 
+TrajectorySource::TrajectorySource(TrajectoryReader trajectory, bool quiet) : quiet_(quiet) {
+  open(std::move(trajectory));
+}
+
 void TrajectorySource::open(TrajectoryReader trajectory) {
   reader_.emplace(std::move(trajectory));
   setScene(sceneOf(*reader_));

@@ -23,6 +23,8 @@ class TrajectorySource {
  public:
   /// Opens the trajectory, or loads the scene with `options`, its warnings on stderr.
   TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const SceneOptions& options = {});
+  /// Of a file that is open.
+  TrajectorySource(TrajectoryReader trajectory, bool quiet);
   TrajectorySource(const TrajectorySource&) = delete;
   TrajectorySource& operator=(const TrajectorySource&) = delete;
 

@@ -286,7 +286,7 @@ class ExportGlb(unittest.TestCase):
         self.simulate(bodies, materials={"red": {"baseColor": "#c82010", "metallic": 0.25, "roughness": 0.75}})
         glb = self.export()
         self.assertNotIn("animations", glb.json)
-        self.assertEqual(set(glb.nodes), {*shapes, "floor", "wall"})
+        self.assertEqual(set(glb.nodes), {*shapes, "floor", "wall", "camera", "light0"})
         for i, (name, (_, size)) in enumerate(shapes.items()):
             found = [max(column) - min(column) for column in zip(*glb.corners(name))]
             self.assertLess(difference(found, size), 1e-2 if name == "sphere" else 1e-6)
@@ -318,7 +318,7 @@ class ExportGlb(unittest.TestCase):
                   {"name": "red", "shape": {"sphere": {"radius": 0.1}}, "material": "red", "position": [0, 0, 5]}]
         self.simulate(bodies, materials={"red": {"baseColor": "#ff0000"}})
         glb = self.export()
-        self.assertEqual((len(glb.nodes), len(glb.json["meshes"]), len(glb.json["materials"])), (10, 2, 2))
+        self.assertEqual((len(glb.nodes), len(glb.json["meshes"]), len(glb.json["materials"])), (12, 2, 2))  # camera and light, too
         positions = {mesh["primitives"][0]["attributes"]["POSITION"] for mesh in glb.json["meshes"]}
         self.assertEqual(len(positions), 1)
         inputs = {sampler["input"] for sampler in glb.json["animations"][0]["samplers"]}
@@ -344,7 +344,7 @@ class ExportGlb(unittest.TestCase):
         ends = {"rod": lambda k: (point("bob", (0, 0.1, 0), k), (0, 0.1, 0)),
                 "spring0": lambda k: (point("ball", (0, 0.1, 0), k), point("bob", (0, -0.1, 0), k)),
                 "rope": lambda k: (point("ball", (0, 0, 0), k), (2, 2.9, 0))}
-        self.assertEqual(set(glb.nodes), {"bob", "bob shape", "ball", "post", *ends})
+        self.assertEqual(set(glb.nodes), {"bob", "bob shape", "ball", "post", "camera", "light0", *ends})
         for name, ends_at in ends.items():
             heights = [corner[1] for corner in glb.corners(name)]
             self.assertEqual((min(heights), max(heights)), (-0.5, 0.5))
@@ -407,6 +407,40 @@ class ExportGlb(unittest.TestCase):
         self.assertEqual(glb.nodes["bead"]["translation"], [0, 0.5, 0])
         self.assertEqual(parents[number["bead"]]["name"], "cart")
         self.assertEqual(parents[number["bead arm of mast"]]["name"], "mast")
+
+    def test_the_camera_is_that_of_the_pictures_and_lights_shine_their_way(self):
+        ball = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "linearVelocity": [1, 0, 0]}
+        for camera in (None, {"position": [1, 2, 5], "target": [0, 0, 0], "verticalFieldOfViewDegrees": 50},
+                       {"position": [1, 2, 5], "target": "ball", "orbit": {"period": 2}}):
+            lights = [{"direction": [0, -2, 0], "color": "#ff8000", "intensity": 2}, {"direction": [3, 0, 4]}]
+            self.simulate([ball], lights=lights, **({"camera": camera} if camera else {}))
+            glb = self.export()
+            shutil.rmtree(self.path("f"), ignore_errors=True)
+            self.assertEqual(cradle("render", self.path("a.sqlite"), "-o", self.path("f"), "--passes", "depth", "--frames", "0").returncode, 0)
+            with open(self.path("f/camera.json")) as file:
+                frames = json.load(file)["frames"]
+            node, motion = glb.nodes["camera"], glb.motion("camera")
+            self.assertEqual(sorted(motion), ["rotation", "translation"] if camera and "orbit" in camera else [])
+            poses = list(zip(motion["translation"], motion["rotation"])) if motion else [((0, node["translation"]), (0, node["rotation"]))]
+            for frame, ((_, place), (_, turn)) in zip(frames, poses):
+                matrix = frame["worldFromCamera"]
+                for axis in range(3):
+                    unit = tuple(1.0 if i == axis else 0.0 for i in range(3))
+                    column = tuple(matrix[i][axis] for i in range(3))
+                    self.assertLess(difference(turned((turn[3], *turn[:3]), unit), column), 1e-6)
+                self.assertLess(difference(tuple(place), tuple(row[3] for row in matrix[:3])), 1e-6 * 6)
+            perspective = glb.json["cameras"][node["camera"]]["perspective"]
+            height = 2 * math.tan(perspective["yfov"] / 2) * frames[0]["K"][1][1]
+            self.assertAlmostEqual(height, 36, delta=1e-9)
+            self.assertAlmostEqual(perspective["aspectRatio"], 64 / 36, delta=1e-12)
+            self.assertEqual(glb.json["extensionsUsed"], ["KHR_lights_punctual"])
+            shining = glb.json["extensions"]["KHR_lights_punctual"]["lights"]
+            for number, (direction, color, intensity) in enumerate((((0, -1, 0), linear("#ff8000"), 2), ((0.6, 0, 0.8), [1, 1, 1], 3))):
+                node = glb.nodes[f"light{number}"]
+                self.assertLess(difference(turned((node["rotation"][3], *node["rotation"][:3]), (0, 0, -1)), direction), 1e-6)
+                light = shining[node["extensions"]["KHR_lights_punctual"]["light"]]
+                self.assertEqual((light["type"], light["intensity"]), ("directional", intensity))
+                self.assertLess(difference(tuple(light["color"]), tuple(color)), 1e-6)
 
     def test_colours_of_a_models_file_stand_for_their_triangles(self):
         frame = {"name": "frame", "shape": {"mesh": os.path.join(SOURCE, "assets", "cradle_frame.3ds")}, "motion": "static", "collision": "none"}
