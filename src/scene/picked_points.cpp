@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
+#include "math/elementary.h"
 #include "scene/camera_axes.h"
 #include "scene/ray_on_body.h"
 
@@ -75,7 +74,8 @@ std::optional<Ray> rayOf(const PixelPick& pick, const Scene& scene, FaultList& f
     return std::nullopt;
   }
   const Camera camera = cameraAtStart(scene);
-  const double perPixel = 2 * std::tan(camera.verticalFieldOfView / 2) / output.height;  // at a depth of 1
+  const SinCos half = sinCos(camera.verticalFieldOfView / 2);
+  const double perPixel = 2 * half.sin / half.cos / output.height;  // at a depth of 1
   const Vec3 inCamera((pick.column + 0.5 - output.width / 2.0) * perPixel,
                       (output.height / 2.0 - pick.row - 0.5) * perPixel, -1);
   return Ray{camera.position, (cameraAxes(camera) * inCamera).normalized()};
