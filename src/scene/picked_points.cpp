@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "math/elementary.h"
 #include "scene/camera_axes.h"
 #include "scene/ray_on_body.h"
