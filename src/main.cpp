@@ -26,6 +26,7 @@
 #include "commands/plot_runs.h"
 #include "commands/simulate_scene.h"
 #include "commands/study_scenes.h"
+#include "commands/verify_truth.h"
 #include "commands/warnings.h"
 #include "core/console.h"
 #include "core/crash.h"
@@ -211,6 +212,14 @@ void addPictures(CLI::App& app, CommandLine& line) {
   pick->add_option("--frame", line.frame, "number of the frame")->capture_default_str();
   pick->add_option("--size", line.pictures.size, "WIDTHxHEIGHT in pixels (default: the scene's)");
   addAssetRoot(pick, line.pictures.assetRoot);
+
+  auto* verify = addCommand(app, line, "verify",
+                            "Check ground truth that render --passes wrote against its trajectory (exit 9: wrong)",
+                            "cradle render scenes/newtons_cradle.json -o truth --passes all --frames 0:10\n"
+                            "  cradle verify truth",
+                            [&] { verifyTruth(line.input, line.json, line.quiet); });
+  verify->add_option("folder", line.input, "folder that `cradle render --passes` filled")->required();
+  verify->add_flag("--json", line.json, "print JSON");
 
   auto* encode =
       addCommand(app, line, "encode", "Make a film of a folder of frames", "cradle encode frames -o film.mp4",

@@ -21,14 +21,15 @@ MAY_INCLUDE = {
     "render": ["core", "math", "mesh", "scene", "trajectory", "image"],
     "overlay": ["core", "math", "mesh", "scene", "trajectory", "image", "render"],
     "truth": ["core", "math", "mesh", "scene", "trajectory", "render"],
+    "verify": ["core", "math", "mesh", "scene", "trajectory"],
     "study": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "image"],
-    "commands": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "image", "render", "overlay", "truth", "study"],
+    "commands": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "image", "render", "overlay", "truth", "verify", "study"],
 }
 # The one place of each library (Eigen and fmt are everywhere).
 LIBRARY_UNITS = {
     "assimp/": ["mesh"],
     "libqhull_r/": ["mesh/convex_hull"],
-    "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file", "commands/plan_scene", "truth/truth_json"],
+    "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file", "commands/plan_scene", "truth/truth_json", "verify/truth_documents"],
     "CLI/": ["main.cpp"],
     "sqlite3.h": ["trajectory/database"],
     "stb/": ["image/png", "image/font", "mesh/texture"],

@@ -15,7 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 2> kFilmFiles = {"camera.json", "events.json"};  // of a whole film
+// Of a whole film. SQLite has a journal beside a trajectory that is being written.
+constexpr std::array<const char*, 5> kFilmFiles = {kCameraFile, kEventsFile, kOriginFile, kKeptTrajectory,
+                                                   "trajectory.sqlite.part-journal"};
 
 std::string endingOf(const std::string& kind) {
   if (kind == kPictureKind) return ".png";

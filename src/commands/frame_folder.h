@@ -11,6 +11,13 @@ namespace cradle {
 inline const std::string kPictureKind = "frame", kHiddenKind = "hidden", kInstancesKind = "instances",
                          kPassesKind = "passes";
 
+// Files of a whole film beside passes: each frame's camera, events, what the film was drawn from, and the trajectory of
+// a scene that had no file of its own.
+inline constexpr const char* kCameraFile = "camera.json";
+inline constexpr const char* kEventsFile = "events.json";
+inline constexpr const char* kOriginFile = "truth.json";
+inline constexpr const char* kKeptTrajectory = "trajectory.sqlite";
+
 /// A file of one frame: a picture, a pass by its name, or what goes with passes.
 struct FrameFile {
   std::string kind;

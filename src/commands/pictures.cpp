@@ -16,12 +16,14 @@
 #include "core/error.h"
 #include "core/folder_lock.h"
 #include "core/interruption.h"
+#include "core/output_path.h"
 #include "core/part_file.h"
 #include "core/progress.h"
 #include "core/read_file.h"
 #include "image/png.h"
 #include "image/video.h"
 #include "scene/ranges.h"
+#include "trajectory/trajectory_file.h"
 
 namespace cradle {
 namespace {
@@ -103,6 +105,52 @@ void writeShared(const fs::path& path, const std::string& bytes) {
   }
 }
 
+/// Whether another run is writing the file that will be `path`.
+bool isBeingFilled(const std::string& path) {
+  try {
+    requireNoWriter(partPath(path));
+  } catch (const Error&) {
+    return true;
+  }
+  return false;
+}
+
+void copyTrajectory(const TrajectoryReader& trajectory, const std::string& path) {
+  TrajectoryWriter writer(path, trajectory.header());
+  for (long frame = 0; frame < trajectory.frameCount(); ++frame) {
+    throwIfInterrupted();
+    writer.append(trajectory.readFrame(frame));
+  }
+  for (const Event& event : trajectory.events()) writer.append(event);
+  writer.finish(trajectory.cost());
+}
+
+/// Keeps a simulated trajectory in the folder, once: a run beside this one may be writing it, and then it is waited
+/// for.
+void keepTrajectory(const TrajectoryReader& trajectory, const std::string& path) {
+  constexpr std::chrono::milliseconds kPause(20);
+  const auto isThere = [&] { return isTrajectoryFile(path) && TrajectoryReader(path).stateHash() == trajectory.stateHash(); };
+  while (!isThere()) {
+    throwIfInterrupted();
+    try {
+      return copyTrajectory(trajectory, path);
+    } catch (const Error& error) {
+      if (isThere()) return;
+      if (error.kind() != ErrorKind::output || !isBeingFilled(path)) throw;
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
+/// Says in the folder what it is drawn from: a trajectory's file by its path, or the trajectory itself of a scene.
+void writeOrigin(const TrajectorySource& source, const std::string& input, const fs::path& folder) {
+  const TrajectoryReader& trajectory = source.reader();
+  const bool isFile = isDatabaseFile(input);
+  if (!isFile) keepTrajectory(trajectory, (folder / kKeptTrajectory).string());
+  const std::string name = isFile ? fs::absolute(input).lexically_normal().string() : kKeptTrajectory;
+  writeShared(folder / kOriginFile, originJson(name, trajectory.hashOfFrames()));
+}
+
 /// The kinds of files that a run writes for each frame.
 std::vector<std::string> kindsOf(const std::vector<Pass>& passes, PassFormat format) {
   std::vector<std::string> kinds;
@@ -160,8 +208,10 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
     truth.emplace(source, view, order.size.width, order.size.height, passes, format);
   made.emplace(folder);
   takeFolder(folder, range, options, kinds, lock);
-  if (truth)
+  if (truth) {
     for (const FileBytes& file : truth->filesOfFilm()) writeShared(fs::path(folder) / file.name, file.bytes);
+    writeOrigin(source, input, folder);
+  }
   const std::vector<long> frames = options.skipExisting ? framesToDraw(folder, range, kinds) : framesIn(range);
   Progress progress("Drawing", "pictures", std::ssize(frames), quiet);
   drawFrames(

@@ -103,6 +103,12 @@ std::string cameraJson(const std::vector<FrameCamera>& cameras) {
   return file.dump() + "\n";
 }
 
+std::string originJson(const std::string& trajectory, const std::string& stateHash) {
+  return Json{{"trajectory", trajectory}, {"stateHash", stateHash}}.dump(-1, ' ', false,
+                                                                         Json::error_handler_t::replace) +
+         "\n";
+}
+
 std::string eventsJson(const std::vector<Event>& events, const Scene& scene) {
   const auto nameOfBody = [&](int body) {
     return body == kWorld ? Json(nullptr) : Json(scene.bodies[static_cast<std::size_t>(body)].name);
