@@ -129,7 +129,9 @@ void copyTrajectory(const TrajectoryReader& trajectory, const std::string& path)
 /// for.
 void keepTrajectory(const TrajectoryReader& trajectory, const std::string& path) {
   constexpr std::chrono::milliseconds kPause(20);
-  const auto isThere = [&] { return isTrajectoryFile(path) && TrajectoryReader(path).stateHash() == trajectory.stateHash(); };
+  const auto isThere = [&] {
+    return isTrajectoryFile(path) && TrajectoryReader(path).stateHash() == trajectory.stateHash();
+  };
   while (!isThere()) {
     throwIfInterrupted();
     try {

@@ -101,8 +101,7 @@ std::vector<FileBytes> TruthFilm::filesOfFilm() {
   std::vector<FrameCamera> cameras;
   for (long frame = 0; frame < source_.frameCount(); ++frame)
     cameras.push_back({frame, frameTime(source_.scene(), frame), inSceneWorld(frame)});
-  return {{kCameraFile, cameraJson(cameras)},
-          {kEventsFile, eventsJson(source_.reader().events(), source_.scene())}};
+  return {{kCameraFile, cameraJson(cameras)}, {kEventsFile, eventsJson(source_.reader().events(), source_.scene())}};
 }
 
 }  // namespace cradle

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "commands/frame_folder.h"
 #include "commands/trajectory_source.h"
 #include "core/console.h"
 #include "core/error.h"
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 
 /// The trajectory that a folder keeps or names, if it still is the one that was drawn.
 TrajectoryReader trajectoryOf(const std::string& folder) {
-  const fs::path origin = fs::path(folder) / "truth.json";
+  const fs::path origin = fs::path(folder) / kOriginFile;
   std::error_code missing;
   if (!fs::exists(origin, missing))
     throw Error(ErrorKind::usage, folder,
@@ -41,12 +42,15 @@ TrajectoryReader trajectoryOf(const std::string& folder) {
 /// What can be indexed without looking again.
 void requireWholeCameras(const VerifiedFilm& film, const std::vector<long>& frames) {
   constexpr long kLargestSide = 16384;  // pixels, of any picture
-  const std::string path = (fs::path(film.folder) / "camera.json").string();
+  const std::string path = (fs::path(film.folder) / kCameraFile).string();
   const auto& [width, height, cameras] = film.cameras;
   if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide)
-    throw Error(ErrorKind::usage, path, fmt::format("says {} x {} pixels; allowed are 1 to {}", width, height, kLargestSide));
+    throw Error(ErrorKind::usage, path,
+                fmt::format("says {} x {} pixels; allowed are 1 to {}", width, height, kLargestSide));
   if (std::ssize(cameras) != film.trajectory.frameCount())
-    throw Error(ErrorKind::different, path, fmt::format("has {} cameras; the trajectory has {} frames", cameras.size(), film.trajectory.frameCount()));
+    throw Error(
+        ErrorKind::different, path,
+        fmt::format("has {} cameras; the trajectory has {} frames", cameras.size(), film.trajectory.frameCount()));
   if (frames.empty())
     throw Error(ErrorKind::usage, film.folder, "has no ground truth; fill it with `cradle render --passes`");
   if (frames.back() >= film.trajectory.frameCount())
@@ -78,8 +82,8 @@ void printFindings(const Findings& findings, std::size_t frames) {
     const Aspect aspect = static_cast<Aspect>(i);
     const Tally& tally = findings.of(aspect);
     if (tally.values == 0) continue;
-    show("{:18} {:10} values, worst off by {:.2g} {}, {:.2g} allowed{}\n", nameOf(aspect), tally.values, tally.deviation,
-         unitOf(aspect), tally.tolerance, tally.holds() ? "" : ": WRONG");
+    show("{:18} {:10} values, worst off by {:.2g} {}, {:.2g} allowed{}\n", nameOf(aspect), tally.values,
+         tally.deviation, unitOf(aspect), tally.tolerance, tally.holds() ? "" : ": WRONG");
   }
 }
 
@@ -100,11 +104,11 @@ void verifyTruth(const std::string& folder, bool asJson, bool quiet) {
   const std::vector<long> frames = framesIn(folder);
   const TrajectoryReader trajectory = trajectoryOf(folder);
   const Scene scene = sceneOf(trajectory);
-  const VerifiedFilm film{folder, scene, trajectory, readCameras((fs::path(folder) / "camera.json").string())};
+  const VerifiedFilm film(folder, scene, trajectory, readCameras((fs::path(folder) / kCameraFile).string()));
   requireWholeCameras(film, frames);
   Findings findings;
   checkCameras(film, findings);
-  checkEvents(film, readEvents((fs::path(folder) / "events.json").string()), findings);
+  checkEvents(film, readEvents((fs::path(folder) / kEventsFile).string()), findings);
   checkFrames(film, frames, quiet, findings);
   if (asJson)
     showText(stdout, findingsJson(findings, std::ssize(frames)));

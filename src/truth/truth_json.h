@@ -30,8 +30,8 @@ struct FrameCamera {
 /// `camera.json`: of each frame K, and worldFromCamera for OpenGL's axes (x right, y up, z back) and OpenCV's.
 std::string cameraJson(const std::vector<FrameCamera>& cameras);
 
-/// `truth.json`: the trajectory that a film was drawn from, a path from the film's folder on or absolute, and the hash of
-/// its states.
+/// `truth.json`: the trajectory that a film was drawn from, a path from the film's folder on or absolute, and the hash
+/// of its states.
 std::string originJson(const std::string& trajectory, const std::string& stateHash);
 
 /// `events.json`: the events of the trajectory; bodies by their names, null for the world.

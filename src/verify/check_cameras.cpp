@@ -99,8 +99,7 @@ void checkCameras(const VerifiedFilm& film, Findings& findings) {
     comparison.addNumber("frame", static_cast<double>(record.frame), static_cast<double>(frame), 0);
     if (film.hasFrame(frame)) comparison.addNumber("time", record.time, film.trajectory.frameTimes()[i], 0);
     checkForm(record, film.cameras, comparison);
-    if (const auto camera = namedCamera(film.scene, record.time))
-      checkNamed(record, film.cameras, *camera, comparison);
+    if (const auto camera = namedCamera(film.scene, record.time)) checkNamed(record, film.cameras, *camera, comparison);
   }
 }
 

@@ -54,7 +54,9 @@ class Comparison {
   }
 
  private:
-  static double relative(double difference, double size) { return difference == 0 ? 0 : difference / std::max(size, 1e-300); }
+  static double relative(double difference, double size) {
+    return difference == 0 ? 0 : difference / std::max(size, 1e-300);
+  }
 
   Aspect aspect_;
   std::string file_, thing_;
@@ -88,7 +90,8 @@ struct BoxAround {
 
 std::optional<BoxAround> boxAround(const Scene& scene, const Shape& shape) {
   if (std::holds_alternative<Plane>(shape)) return std::nullopt;
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return BoxAround{Vec3::Zero(), Vec3::Constant(2 * sphere->radius)};
+  if (const auto* sphere = std::get_if<Sphere>(&shape))
+    return BoxAround{Vec3::Zero(), Vec3::Constant(2 * sphere->radius)};
   if (const auto* box = std::get_if<Box>(&shape)) return BoxAround{Vec3::Zero(), box->size};
   if (const auto* c = std::get_if<Cylinder>(&shape))
     return BoxAround{Vec3::Zero(), {2 * c->radius, c->length, 2 * c->radius}};
@@ -164,7 +167,8 @@ void InstanceCheck::checkMask(const InstanceRecord& record) const {
   long apart = 0;
   for (std::size_t pixel = 0; pixel < mask->size() && !frame_.segmentation.empty(); ++pixel)
     apart += (*mask)[pixel] != (frame_.segmentation[pixel] == record.id);
-  comparison_.add("run lengths", static_cast<double>(apart), 0, fmt::format("other than segmentation in {} pixels", apart),
+  comparison_.add("run lengths", static_cast<double>(apart), 0,
+                  fmt::format("other than segmentation in {} pixels", apart),
                   "the mask of " + truthFileName("segmentation", frame_.number));
   const Extent extent = extentOf(*mask, film_.width());
   comparison_.addExact("bbox", listed(record.box), listed(extent.box));
@@ -177,8 +181,8 @@ void InstanceCheck::checkMask(const InstanceRecord& record) const {
   const bool isAround = record.area == 0 || (left <= record.box[0] && top <= record.box[1] &&
                                              left + width >= record.box[0] + record.box[2] &&
                                              top + height >= record.box[1] + record.box[3]);
-  const bool isInPicture = left >= 0 && top >= 0 && left + width <= film_.cameras.width &&
-                           top + height <= film_.cameras.height;
+  const bool isInPicture =
+      left >= 0 && top >= 0 && left + width <= film_.cameras.width && top + height <= film_.cameras.height;
   comparison_.add("wholeBox", isAround && isInPicture ? 0 : 1, 0, listed(record.wholeBox),
                   "a box in the picture around " + listed(record.box));
 }
@@ -252,7 +256,8 @@ void InstanceCheck::checkEveryIdIsListed() {
   for (const int id : frame_.ids)
     if (id >= 1 && static_cast<std::size_t>(id) <= bodies) ++shown[static_cast<std::size_t>(id - 1)];
   for (const InstanceRecord& record : frame_.instances.annotations)
-    if (record.id >= 1 && static_cast<std::size_t>(record.id) <= bodies) ++records[static_cast<std::size_t>(record.id - 1)];
+    if (record.id >= 1 && static_cast<std::size_t>(record.id) <= bodies)
+      ++records[static_cast<std::size_t>(record.id - 1)];
   for (std::size_t i = 0; i < bodies; ++i) {
     comparison_.beginThing(fmt::format("body \"{}\" ({})", film_.scene.bodies[i].name, i + 1));
     const bool isRight = records[i] == 1 || (records[i] == 0 && shown[i] == 0);

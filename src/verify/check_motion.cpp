@@ -11,13 +11,13 @@
 namespace cradle {
 namespace {
 
-constexpr double kSinglePart = 1.2e-7;    // as in check_surfaces.cpp
-constexpr double kDoublePart = 4e-15;     // a dozen operations
-constexpr double kStandingStill = 1e-9;   // pixels: what moves by less than this is written as what does not
-constexpr double kSurelyBefore = 1e-5;    // of the depth: what the rounding of a place changes on a slanted surface
-constexpr double kEdgeShare = 0.02;       // of the pixels of an id that may be in parts thinner than a pixel
-constexpr double kTouchingShare = 1e-3;   // of the pixels of a frame that may be where one thing just hides another
-constexpr double kFewPixels = 4;          // that may be so in any case
+constexpr double kSinglePart = 1.2e-7;   // as in check_surfaces.cpp
+constexpr double kDoublePart = 4e-15;    // a dozen operations
+constexpr double kStandingStill = 1e-9;  // pixels: what moves by less than this is written as what does not
+constexpr double kSurelyBefore = 1e-5;   // of the depth: what the rounding of a place changes on a slanted surface
+constexpr double kEdgeShare = 0.02;      // of the pixels of an id that may be in parts thinner than a pixel
+constexpr double kTouchingShare = 1e-3;  // of the pixels of a frame that may be where one thing just hides another
+constexpr double kFewPixels = 4;         // that may be so in any case
 
 /// A picture's pixels one by one: how many there are, how many are not as they should be, and the first of those.
 struct PixelCount {
@@ -35,16 +35,17 @@ struct PixelCount {
   void report(Aspect aspect, double share, Findings& findings) const {
     if (values == 0) return;
     const double allowed = std::max(share * static_cast<double>(values), kFewPixels);
-    findings.add(aspect, static_cast<double>(faults), allowed, [&] { return *first; }, values);
+    findings.add(
+        aspect, static_cast<double>(faults), allowed, [&] { return *first; }, values, faults);
   }
 };
 
 /// Where something is in another frame.
 struct Destination {
-  double depth = 0;                                // m
+  double depth = 0;                                 // m
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  // pixels
-  bool isInFront = false, isSure = true;           // not sure: rounding decides whether it is in front
-  double tolerance = 0;                            // pixels
+  bool isInFront = false, isSure = true;            // not sure: rounding decides whether it is in front
+  double tolerance = 0;                             // pixels
 };
 
 /// A pixel and its centre, in pixel coordinates.
@@ -254,8 +255,8 @@ void MotionCheck::checkHidden() {
   }
   const auto solids = solidsOf(film_.scene, to->worldFromBody, to->camera.position());
   const bool knowsAll = hasSolidsAlone(film_.scene);
-  const Eigen::AlignedBox2d picture(Eigen::Vector2d::Zero(),
-                                    Eigen::Vector2d(static_cast<double>(film_.width()), static_cast<double>(film_.height())));
+  const Eigen::AlignedBox2d picture(Eigen::Vector2d::Zero(), Eigen::Vector2d(static_cast<double>(film_.width()),
+                                                                             static_cast<double>(film_.height())));
   visitMoved(*to, [&](const MovingPixel& at, const Destination& moved) {
     const double depth = frame_.ids[at.pixel] == 0 ? std::numeric_limits<double>::infinity() : moved.depth;
     const PictureRay ray{to->camera.position(), to->camera.rayAt(moved.place.x(), moved.place.y())};
@@ -271,8 +272,10 @@ void MotionCheck::checkHidden() {
 
 /// Whether the pixels around a place in the next frame show an id at a depth; nothing where they do not all show one.
 std::optional<bool> MotionCheck::agreesWithNext(int id, const Destination& moved) const {
-  const long column = static_cast<long>(std::floor(moved.place.x())), row = static_cast<long>(std::floor(moved.place.y()));
-  if (column < 1 || row < 1 || column + 1 >= film_.cameras.width || row + 1 >= film_.cameras.height) return std::nullopt;
+  const long column = static_cast<long>(std::floor(moved.place.x())),
+             row = static_cast<long>(std::floor(moved.place.y()));
+  if (column < 1 || row < 1 || column + 1 >= film_.cameras.width || row + 1 >= film_.cameras.height)
+    return std::nullopt;
   const auto at = [&](long x, long y) { return static_cast<std::size_t>(y * film_.cameras.width + x); };
   const int shown = next_->ids[at(column, row)];
   double least = std::numeric_limits<double>::infinity(), most = 0;  // m, of depths
@@ -298,10 +301,10 @@ void MotionCheck::checkReprojection() {
     const auto agrees = agreesWithNext(id, moved);
     if (!agrees) return;
     counts[id].add(*agrees, [&] {
-      return Fault{{truthFileName("hidden", frame_.number), at.x, at.y},
-                   fmt::format("0, and in the next frame something else at ({:.3f}, {:.3f})", moved.place.x(),
-                               moved.place.y()),
-                   fmt::format("id {} at a depth of {:.9g} m there", id, moved.depth)};
+      return Fault{
+          {truthFileName("hidden", frame_.number), at.x, at.y},
+          fmt::format("0, and in the next frame something else at ({:.3f}, {:.3f})", moved.place.x(), moved.place.y()),
+          fmt::format("id {} at a depth of {:.9g} m there", id, moved.depth)};
     });
   });
   for (const auto& [id, count] : counts) count.report(Aspect::reprojection, kEdgeShare, findings_);

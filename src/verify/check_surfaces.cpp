@@ -12,6 +12,7 @@ namespace {
 
 // A number of single precision is within 6e-8 of what it stands for; doubled, for the way there in double precision.
 constexpr double kSingle = 1.2e-7;
+constexpr double kDouble = 1e-14;         // a dozen operations in double precision, and then some
 constexpr double kBefore = 2 * kSingle;   // of the depth, by which something is surely before what is seen
 constexpr double kAwayFromCamera = 1e-6;  // cosine between a normal and the view, of a surface seen along itself
 
@@ -71,6 +72,7 @@ class SurfaceCheck {
   void checkSolids(const PixelRay& at);
   void checkOwn(const PlacedSolid& solid, const DepthRange& range, const PixelRay& at);
   void checkNothingBefore(const PlacedSolid& solid, const DepthRange& range, double depth, const PixelRay& at);
+  void checkMesh(const PixelRay& at);
   void checkCoordinates(const PixelRay& at);
   double knownDepth(const PixelRay& at, const std::optional<DepthRange>& own) const;
 
@@ -99,6 +101,7 @@ void SurfaceCheck::checkPixels() {
       checkId(at);
       checkSkyAndSides(at);
       checkSolids(at);
+      checkMesh(at);
       checkCoordinates(at);
     }
 }
@@ -132,8 +135,9 @@ void SurfaceCheck::checkSkyAndSides(const PixelRay& at) {
   if (frame_.normal.empty()) return;
   const Vec3 normal = vectorAt(frame_.normal, at.pixel);
   if (id == 0) {
-    findings_.add(Aspect::normal, normal.array().isNaN().all() ? 0 : 1, kSingle,
-                  [&] { return Fault{placeIn("normal", at), wordsOf(normal), "NaN, for the sky"}; });
+    findings_.add(Aspect::normal, normal.array().isNaN().all() ? 0 : 1, kSingle, [&] {
+      return Fault{placeIn("normal", at), wordsOf(normal), "NaN, for the sky"};
+    });
     return;
   }
   findings_.add(Aspect::normal, std::abs(normal.norm() - 1), 2 * kSingle, [&] {
@@ -206,6 +210,33 @@ void SurfaceCheck::checkNothingBefore(const PlacedSolid& solid, const DepthRange
   });
 }
 
+/// What is seen of a mesh is on one of its triangles, which has that normal.
+void SurfaceCheck::checkMesh(const PixelRay& at) {
+  const std::size_t body = static_cast<std::size_t>(frame_.ids[at.pixel]) - 1;  // beyond all, of what is no body
+  if (frame_.depth.empty() || body >= film_.scene.bodies.size()) return;
+  const auto* model = std::get_if<ModelShape>(&film_.scene.bodies[body].shape);
+  if (model == nullptr) return;
+  const RigidTransform& place = frame_.worldFromBody[body];
+  const Mat3 bodyFromWorld = place.rotation.toRotationMatrix().transpose();
+  const double depth = static_cast<double>(frame_.depth[at.pixel]);
+  if (!std::isfinite(depth)) return;  // told as a fault already
+  const Vec3 local = bodyFromWorld * (at.ray.origin + depth * at.ray.direction - place.translation);
+  const double far = at.ray.origin.norm() + place.translation.norm() + depth * at.ray.direction.norm();
+  const double reach = kSingle * depth * at.ray.direction.norm() + kDouble * far;
+  const Vec3 normal = frame_.normal.empty() ? Vec3(Vec3::Zero()) : vectorAt(frame_.normal, at.pixel);
+  const DrawnSurface::Match match =
+      film_.meshes[static_cast<std::size_t>(model->model)].match(local, bodyFromWorld * normal, reach, kDouble * far);
+  findings_.add(Aspect::depth, match.distance / (reach / kSingle), kSingle, [&] {
+    return Fault{placeIn("depth", at), fmt::format("{:.9g} m", depth),
+                 fmt::format("a depth on the surface of {}, {:.3g} m or more away", nameOfId(frame_.ids[at.pixel]),
+                             match.distance)};
+  });
+  if (frame_.normal.empty() || match.distance > reach) return;
+  findings_.add(Aspect::normal, match.normalDeviation, match.normalTolerance, [&] {
+    return Fault{placeIn("normal", at), wordsOf(normal), "that of a triangle of " + nameOfId(frame_.ids[at.pixel])};
+  });
+}
+
 /// A point in a body's frame is on the ray of its pixel, at the depth that the folder says.
 void SurfaceCheck::checkCoordinates(const PixelRay& at) {
   const int id = frame_.ids[at.pixel];
@@ -225,8 +256,7 @@ void SurfaceCheck::checkCoordinates(const PixelRay& at) {
   const double size = local.norm() + depth * at.ray.direction.norm() +
                       1e-8 * (at.ray.origin.norm() + place.translation.norm());  // double precision beside single
   findings_.add(Aspect::objectCoordinates, (point - seen).norm(), kSingle * size, [&] {
-    return Fault{placeIn("objectCoordinates", at),
-                 fmt::format("{}, in the world {}", wordsOf(local), wordsOf(point)),
+    return Fault{placeIn("objectCoordinates", at), fmt::format("{}, in the world {}", wordsOf(local), wordsOf(point)),
                  fmt::format("{} in the world, of {}", wordsOf(seen), nameOfId(id))};
   });
 }
@@ -250,10 +280,9 @@ void SurfaceCheck::checkSilhouettes() {
     });
     if (sure.pixels == 0 || off > 0) continue;
     const auto& [left, top, width, height] = found.wholeBox;
-    const long beside =
-        std::max({0L, possible.left - left, left - sure.left, possible.top - top, top - sure.top,
-                  sure.right - left - width, left + width - possible.right, sure.bottom - top - height,
-                  top + height - possible.bottom});
+    const long beside = std::max({0L, possible.left - left, left - sure.left, possible.top - top, top - sure.top,
+                                  sure.right - left - width, left + width - possible.right, sure.bottom - top - height,
+                                  top + height - possible.bottom});
     findings_.add(Aspect::silhouette, static_cast<double>(beside), 0, [&, l = left, t = top, w = width, h = height] {
       return Fault{{file},
                    fmt::format("wholeBox [{} {} {} {}] of {}", l, t, w, h, name),

@@ -53,16 +53,17 @@ struct Tally {
 /// Collects deviations of numbers from what they should be.
 class Findings {
  public:
-  /// A number that deviates by more than `tolerance`, or by what is no number, is a fault; describe() gives it. It
-  /// stands for `values` numbers.
+  /// A number that deviates by more than `tolerance`, or by what is no number, is a fault; describe() gives it. It may
+  /// stand for more numbers, of which some are wrong.
   template <class Describe>
-  void add(Aspect aspect, double deviation, double tolerance, const Describe& describe, long values = 1) {
+  void add(Aspect aspect, double deviation, double tolerance, const Describe& describe, long values = 1,
+           long wrong = 1) {
     Tally& tally = tallies_[static_cast<std::size_t>(aspect)];
     const bool isFirst = tally.values == 0;
     tally.values += values;
     if (std::isnan(deviation)) deviation = std::numeric_limits<double>::infinity();
     const bool isFault = deviation > tolerance;
-    if (isFault) ++tally.faults;
+    if (isFault) tally.faults += wrong;
     if (!isFirst && !isWorse(deviation, tolerance, tally)) return;
     tally.deviation = deviation;
     tally.tolerance = tolerance;

@@ -66,17 +66,16 @@ RaySpan spanIn(const Box& box, const PictureRay& ray, double growth) {
 }
 
 RaySpan spanIn(const Cylinder& cylinder, const PictureRay& ray, double growth) {
-  return both(spanInRound(ray.origin.cwiseProduct(kAcross), ray.direction.cwiseProduct(kAcross),
-                          cylinder.radius + growth),
-              spanInSlab(ray.origin.y(), ray.direction.y(), cylinder.length / 2 + growth));
+  return both(
+      spanInRound(ray.origin.cwiseProduct(kAcross), ray.direction.cwiseProduct(kAcross), cylinder.radius + growth),
+      spanInSlab(ray.origin.y(), ray.direction.y(), cylinder.length / 2 + growth));
 }
 
 RaySpan spanIn(const Capsule& capsule, const PictureRay& ray, double growth) {
   const Vec3 cap(0, capsule.length / 2, 0);
   const double radius = capsule.radius + growth;
-  const RaySpan side =
-      both(spanInRound(ray.origin.cwiseProduct(kAcross), ray.direction.cwiseProduct(kAcross), radius),
-           spanInSlab(ray.origin.y(), ray.direction.y(), capsule.length / 2));
+  const RaySpan side = both(spanInRound(ray.origin.cwiseProduct(kAcross), ray.direction.cwiseProduct(kAcross), radius),
+                            spanInSlab(ray.origin.y(), ray.direction.y(), capsule.length / 2));
   return either(side, either(spanInRound(ray.origin - cap, ray.direction, radius),
                              spanInRound(ray.origin + cap, ray.direction, radius)));
 }

@@ -48,7 +48,7 @@ std::vector<int> idsOf(const TruthFrame& frame, std::size_t width, std::size_t h
   std::vector<int> ids(width * height, kUnknownId);
   for (const InstanceRecord& record : frame.instances.annotations) {
     const auto mask = maskOf(record, width, height);
-    if (!mask) continue;
+    if (!mask || record.id < 1 || record.id >= kFirstIdOfLinks) continue;  // told as faults of the annotation
     for (std::size_t pixel = 0; pixel < ids.size(); ++pixel)
       if ((*mask)[pixel]) ids[pixel] = static_cast<int>(record.id);
   }
@@ -62,6 +62,12 @@ TruthCamera::TruthCamera(const CameraRecord& record)
   const Mat3 rotation = record.worldFromCameraOpenCv.topLeftCorner<3, 3>();
   pixelFromWorld_ = record.intrinsics * rotation.transpose();
   worldFromPixel_ = rotation * record.intrinsics.inverse();
+}
+
+VerifiedFilm::VerifiedFilm(std::string place, const Scene& ofScene, const TrajectoryReader& states,
+                           CameraDocument document)
+    : folder(std::move(place)), scene(ofScene), trajectory(states), cameras(std::move(document)) {
+  for (const Model& model : scene.models) meshes.emplace_back(model.drawn);
 }
 
 std::vector<long> framesIn(const std::string& folder) {

@@ -7,12 +7,13 @@
 
 #include "scene/scene.h"
 #include "trajectory/trajectory_file.h"
+#include "verify/drawn_surface.h"
 #include "verify/findings.h"
 #include "verify/truth_documents.h"
 
 namespace cradle {
 
-constexpr int kUnknownId = -1;       // in place of a pixel's id
+constexpr int kUnknownId = -1;          // in place of a pixel's id
 constexpr int kFirstIdOfLinks = 60000;  // and the number of their LinkKind; bodies have their index + 1, the sky 0
 
 /// A camera as camera.json has it.
@@ -36,12 +37,15 @@ class TruthCamera {
   double focal_;
 };
 
-/// What a folder of ground truth is checked against.
+/// What a folder of ground truth is checked against. Scene and trajectory must outlive it.
 struct VerifiedFilm {
+  VerifiedFilm(std::string folder, const Scene& scene, const TrajectoryReader& trajectory, CameraDocument cameras);
+
   std::string folder;
   const Scene& scene;
   const TrajectoryReader& trajectory;
   CameraDocument cameras;
+  std::vector<DrawnSurface> meshes;  // of each of the scene's models
 
   std::size_t width() const { return static_cast<std::size_t>(cameras.width); }    // pixels
   std::size_t height() const { return static_cast<std::size_t>(cameras.height); }  // pixels

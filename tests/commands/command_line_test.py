@@ -56,7 +56,7 @@ class InTemporaryFolder(unittest.TestCase):
 
 class Usage(InTemporaryFolder):
     def test_help_of_every_command_has_an_example(self):
-        for command in ("simulate", "render", "encode", "video", "inspect", "check", "compare", "export", "plot", "study", "stability"):
+        for command in ("simulate", "render", "verify", "encode", "video", "inspect", "check", "compare", "export", "plot", "study", "stability"):
             result = cradle(command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Example:\n  cradle " + command, result.stdout)
@@ -727,7 +727,7 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(cradle("render", self.scene, "-o", self.path("all"), "--passes", "all").returncode, 0)
         names = [f"{kind}_{i:06}.npy" for kind in kinds for i in range(6)] + [f"instances_{i:06}.json" for i in range(6)]
         self.assertEqual(sorted(os.listdir(self.path("all"))),
-                         sorted(names + ["camera.json", "events.json"] + [f"frame_{i:06}.png" for i in range(6)]))
+                         sorted(names + ["camera.json", "events.json", "trajectory.sqlite", "truth.json"] + [f"frame_{i:06}.png" for i in range(6)]))
         self.assertEqual(cradle("encode", self.path("all"), "-o", self.path("f.mp4")).returncode, 0)
         self.assertEqual(film_frames(self.path("f.mp4")), "64,36,6")
         cradle("simulate", self.scene, "-o", self.path("t.sqlite"))
@@ -736,8 +736,11 @@ class Pictures(InTemporaryFolder):
         for process in runs:
             _, stderr = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 0, stderr)
-        self.assertEqual(sorted(os.listdir(self.path("parts"))), sorted(names + ["camera.json", "events.json"]))
-        for name in os.listdir(self.path("parts")):
+        self.assertEqual(sorted(os.listdir(self.path("parts"))), sorted(names + ["camera.json", "events.json", "truth.json"]))
+        origins = [json.loads(content(self.path(name + "/truth.json"))) for name in ("all", "parts")]
+        self.assertEqual([origin["trajectory"] for origin in origins], ["trajectory.sqlite", self.path("t.sqlite")])
+        self.assertEqual(origins[0]["stateHash"], origins[1]["stateHash"])
+        for name in names + ["camera.json", "events.json"]:
             self.assertEqual(content(self.path("parts/" + name)), content(self.path("all/" + name)), name)
 
     def test_passes_have_their_shapes_and_the_state_at_the_end_no_next_one(self):

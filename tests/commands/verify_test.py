@@ -28,7 +28,8 @@ def everything(**changes):
             {"name": "box", "shape": {"box": {"size": [0.5, 0.3, 0.4]}}, "position": [-0.6, 0.6, 0.1], "angularVelocity": [3, 1, 2]},
             {"name": "drum", "shape": {"cylinder": {"radius": 0.2, "length": 0.5}}, "position": [0.8, 0.7, -0.3], "angularVelocity": [1, 3, -2]},
             {"name": "pill", "shape": {"capsule": {"radius": 0.12, "length": 0.3}}, "position": [0.2, 1.2, 0], "angularVelocity": [5, 0, 2]},
-            {"name": "gear", "shape": {"mesh": gear, "scale": 0.3}, "position": [-0.5, 1.3, -0.2], "angularVelocity": [0, 2, 4]},
+            {"name": "gear", "shape": {"mesh": gear, "scale": 1.6}, "position": [-0.5, 1.3, -0.2],
+             "orientation": {"axis": [1, 0, 0], "angleDegrees": 70}, "angularVelocity": [0, 2, 4]},
             {"name": "ground", "shape": {"plane": {}}, "motion": "static"}],
         "rods": [{"bodyA": "box", "bodyB": "drum"}],
         "springs": [{"bodyA": "pill", "anchorB": [0.2, 1.9, 0], "stiffness": 30}],
@@ -206,10 +207,24 @@ class PlantedFaults(InFolder):
         self.save("depth", (self.load("depth") * np.linalg.norm(self.rays(), axis=-1)).astype(np.float32))
         self.finds("depth_000003.npy: pixel (", "where the ray meets body")
 
+    def test_depth_of_a_mesh_that_is_too_far(self):
+        depth, ids = self.load("depth"), self.load("segmentation")
+        self.assertGreater((ids == 5).sum(), 50)
+        self.save("depth", np.where(ids == 5, depth * np.float32(1 + 1e-5), depth))
+        self.finds("depth_000003.npy: pixel (", "on the surface of body \"gear\"")
+
+    def test_normals_of_a_mesh_that_are_smooth(self):
+        normal, ids = self.load("normal"), self.load("segmentation")
+        normal[ids == 5] += np.float32(1e-5) * (np.indices(ids.shape)[1][ids == 5, None] % 3)
+        self.save("normal", normal / np.linalg.norm(normal, axis=-1, keepdims=True))
+        self.finds("normal_000003.npy: pixel (", "a triangle of body \"gear\"")
+
     def test_depth_at_the_corners_of_pixels(self):
         """Of the ground, whose inverse depth is linear in the picture."""
         depth, ids = self.load("depth").astype(float), self.load("segmentation")
-        shifted = 1 / (1 / depth + np.gradient(1 / depth, axis=0) / 2)
+        inverse = 1 / depth
+        with np.errstate(divide="ignore"):  # of the sky
+            shifted = 1 / (inverse + np.gradient(inverse, axis=0) / 2)
         whole = (ids == 6) & (np.roll(ids, 1, 0) == 6) & (np.roll(ids, -1, 0) == 6)
         self.assertGreater(whole.sum(), 500)
         self.save("depth", np.where(whole, shifted, depth).astype(np.float32))
