@@ -213,11 +213,11 @@ void addPictures(CLI::App& app, CommandLine& line) {
   pick->add_option("--size", line.pictures.size, "WIDTHxHEIGHT in pixels (default: the scene's)");
   addAssetRoot(pick, line.pictures.assetRoot);
 
-  auto* verify = addCommand(app, line, "verify",
-                            "Check ground truth that render --passes wrote against its trajectory (exit 9: wrong)",
-                            "cradle render scenes/newtons_cradle.json -o truth --passes all --frames 0:10\n"
-                            "  cradle verify truth",
-                            [&] { verifyTruth(line.input, line.json, line.quiet); });
+  auto* verify = addCommand(
+      app, line, "verify", "Check ground truth that render --passes wrote against its trajectory (exit 9: wrong)",
+      "cradle verify truth\n"
+      "  cradle render scenes/newtons_cradle.json -o truth --passes all && cradle verify truth --json",
+      [&] { verifyTruth(line.input, line.json, line.quiet); });
   verify->add_option("folder", line.input, "folder that `cradle render --passes` filled")->required();
   verify->add_flag("--json", line.json, "print JSON");
 

@@ -15,8 +15,8 @@ constexpr double kSinglePart = 1.2e-7;   // as in check_surfaces.cpp
 constexpr double kDoublePart = 4e-15;    // a dozen operations
 constexpr double kStandingStill = 1e-9;  // pixels: what moves by less than this is written as what does not
 constexpr double kSurelyBefore = 1e-5;   // of the depth: what the rounding of a place changes on a slanted surface
-constexpr double kEdgeShare = 0.02;      // of the pixels of an id that may be in parts thinner than a pixel
-constexpr double kTouchingShare = 1e-3;  // of the pixels of a frame that may be where one thing just hides another
+constexpr double kEdgeShare = 0.01;      // of the pixels of an id that may be in parts thinner than a pixel
+constexpr double kTouchingShare = 1e-4;  // of the pixels of a frame that may be where one thing just hides another
 constexpr double kFewPixels = 4;         // that may be so in any case
 
 /// A picture's pixels one by one: how many there are, how many are not as they should be, and the first of those.

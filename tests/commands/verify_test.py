@@ -124,6 +124,17 @@ class RightTruth(InFolder):
         self.verifies(self.path("shared"))
         self.assertEqual([name for name in os.listdir(self.path("shared")) if "sqlite" in name], ["trajectory.sqlite"])
 
+    def test_a_film_that_replaces_another_brings_its_trajectory(self):
+        options = ("depth,flow", "--frames", "0:2")
+        folder = self.render("replaced", self.scene, *options)
+        other = self.write("lighter.json", everything(gravity=[0, -5, 0]))
+        self.render("replaced", other, *options, "--overwrite")
+        self.verifies(folder)
+        os.truncate(os.path.join(folder, "trajectory.sqlite"), 5000)
+        self.assertEqual(cradle("verify", folder).returncode, 2)
+        self.render("replaced", other, *options, "--overwrite")
+        self.verifies(folder)
+
     def test_gravity_along_another_axis_holds(self):
         document = everything(gravity=[9.81, 0, 0])
         for body in document["bodies"]:
