@@ -32,9 +32,10 @@ struct PixelCount {
     if (!first) first = describe();
   }
 
-  void report(Aspect aspect, double share, Findings& findings) const {
+  /// A share of `ofValues` of them may be wrong.
+  void report(Aspect aspect, double share, long ofValues, Findings& findings) const {
     if (values == 0) return;
-    const double allowed = std::max(share * static_cast<double>(values), kFewPixels);
+    const double allowed = std::max(share * static_cast<double>(ofValues), kFewPixels);
     findings.add(
         aspect, static_cast<double>(faults), allowed, [&] { return *first; }, values, faults);
   }
@@ -94,6 +95,9 @@ class MotionCheck {
   template <class Visit>
   void visitMoved(const Neighbour& to, const Visit& visit) const;
   bool isFollowed(std::size_t pixel) const;
+  bool isOfMesh(int id) const {
+    return id > 0 && std::holds_alternative<ModelShape>(film_.scene.bodies[static_cast<std::size_t>(id - 1)].shape);
+  }
   bool rests(std::size_t pixel, const Neighbour& other) const;
   Destination skyIn(const TruthCamera& to, const Vec3& ray) const;
   Destination destinationOf(std::size_t pixel, const Eigen::Vector2d& centre, const Neighbour& to) const;
@@ -221,14 +225,17 @@ void MotionCheck::visitMoved(const Neighbour& to, const Visit& visit) const {
   });
 }
 
-/// What is before a depth (m) on a ray: for certain, or, for all that rounding may do, perhaps.
+/// What is before a depth (m) on a ray, of all bodies or of one: for certain, or, for all that rounding may do,
+/// perhaps.
 struct Before {
   bool surely = false, perhaps = false;
 };
 
-Before findBefore(const std::vector<PlacedSolid>& solids, const PictureRay& ray, double depth) {
+Before findBefore(const std::vector<PlacedSolid>& solids, const PictureRay& ray, double depth,
+                  std::optional<int> body = {}) {
   Before before;
   for (const PlacedSolid& solid : solids) {
+    if (body && solid.body() != *body) continue;
     const auto range = solid.meet(ray);
     if (!range) continue;
     before.surely = before.surely || (range->isSure && range->most < depth * (1 - kSurelyBefore));
@@ -267,7 +274,7 @@ void MotionCheck::checkHidden() {
     else if (knowsAll && picture.contains(moved.place))
       add(before.perhaps, at, "1", "0: no body is before it in the next frame");
   });
-  count.report(Aspect::hidden, kTouchingShare, findings_);
+  count.report(Aspect::hidden, kTouchingShare, count.values, findings_);
 }
 
 /// Whether the pixels around a place in the next frame show an id at a depth; nothing where they do not all show one.
@@ -291,23 +298,34 @@ std::optional<bool> MotionCheck::agreesWithNext(int id, const Destination& moved
   return id == 0 || next_->depth.empty() || (moved.depth >= least - slack && moved.depth <= most + slack);
 }
 
-/// What is not hidden is what the next frame shows at its place.
+/// What is not hidden is what the next frame shows at its place. What is, is not; of meshes, which may hide themselves,
+/// that is not known.
 void MotionCheck::checkReprojection() {
   if (frame_.hidden.empty() || next_ == nullptr) return;
-  std::map<int, PixelCount> counts;  // by id
-  visitMoved(*neighbourAt(frame_.number + 1), [&](const MovingPixel& at, const Destination& moved) {
-    if (frame_.hidden[at.pixel] != 0) return;
+  std::map<int, PixelCount> counts;  // of what is not hidden, by id
+  PixelCount hidden;                 // of what is
+  long all = 0;
+  const Neighbour to = *neighbourAt(frame_.number + 1);
+  const auto solids = solidsOf(film_.scene, to.worldFromBody, to.camera.position());
+  visitMoved(to, [&](const MovingPixel& at, const Destination& moved) {
     const int id = frame_.ids[at.pixel];
+    const bool isHidden = frame_.hidden[at.pixel] != 0;
+    if (isHidden && isOfMesh(id)) return;
     const auto agrees = agreesWithNext(id, moved);
     if (!agrees) return;
-    counts[id].add(*agrees, [&] {
-      return Fault{
-          {truthFileName("hidden", frame_.number), at.x, at.y},
-          fmt::format("0, and in the next frame something else at ({:.3f}, {:.3f})", moved.place.x(), moved.place.y()),
-          fmt::format("id {} at a depth of {:.9g} m there", id, moved.depth)};
-    });
+    const PictureRay ray{to.camera.position(), to.camera.rayAt(moved.place.x(), moved.place.y())};
+    const bool isShown = *agrees && (!isHidden || !findBefore(solids, ray, moved.depth, id - 1).perhaps);
+    const auto fault = [&] {
+      return Fault{{truthFileName("hidden", frame_.number), at.x, at.y},
+                   fmt::format("{}, and in the next frame {} at ({:.3f}, {:.3f})", isHidden ? 1 : 0,
+                               isShown ? "the same" : "something else", moved.place.x(), moved.place.y()),
+                   fmt::format("id {} at a depth of {:.9g} m there{}", id, moved.depth, isHidden ? " hidden" : "")};
+    };
+    (isHidden ? hidden : counts[id]).add(isShown != isHidden, fault);
+    ++all;
   });
-  for (const auto& [id, count] : counts) count.report(Aspect::reprojection, kEdgeShare, findings_);
+  for (const auto& [id, count] : counts) count.report(Aspect::reprojection, kEdgeShare, count.values, findings_);
+  hidden.report(Aspect::reprojection, kEdgeShare, all, findings_);  // a rod across a small body hides a line of it
 }
 
 }  // namespace

@@ -285,11 +285,17 @@ class PlantedFaults(InFolder):
         self.save("objectCoordinates", local)
         self.finds("objectCoordinates_000003.npy: pixel (", "\"gear\"")
 
-    def test_everything_hidden_that_is_not(self):
+    def test_nothing_hidden_where_something_is(self):
         hidden = self.load("hidden")
         hidden[:] = 0
         self.save("hidden", hidden)
         self.finds("hidden_000003.npy: pixel (")
+
+    def test_everything_hidden_where_little_is(self):
+        hidden = self.load("hidden")
+        hidden[:] = 1
+        self.save("hidden", hidden)
+        self.finds("hidden_000003.npy: pixel (", "1, and in the next frame the same")
 
     def test_a_camera_that_is_turned(self):
         def turn(document):
