@@ -158,7 +158,8 @@ void writeOrigin(const TrajectorySource& source, const std::string& input, const
   const bool isFile = isDatabaseFile(input);
   if (!isFile) keepTrajectory(trajectory, (folder / kKeptTrajectory).string());
   const std::string name = isFile ? fs::absolute(input).lexically_normal().string() : kKeptTrajectory;
-  writeShared(folder / kOriginFile, originJson(name, trajectory.hashOfFrames()));
+  writeShared(folder / kOriginFile,
+              originJson(name, trajectory.isFinished() ? trajectory.stateHash() : trajectory.hashOfFrames()));
 }
 
 /// The kinds of files that a run writes for each frame.

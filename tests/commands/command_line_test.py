@@ -761,7 +761,7 @@ class Pictures(InTemporaryFolder):
             _, stderr = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 0, stderr)
         names = [f"{kind}_{i:06}.{ending}" for i in range(6) for kind, ending in (("frame", "png"), ("depth", "npy"), ("instances", "json"))]
-        self.assertEqual(sorted(os.listdir(self.path("f"))), sorted(names + ["camera.json", "events.json"]))
+        self.assertEqual(sorted(os.listdir(self.path("f"))), sorted(names + ["camera.json", "events.json", "truth.json"]))
         # Parts differ by a frame at most, and more of them than frames leave some without any.
         for parts, sizes in ((4, [1, 1, 2, 2]), (8, [0, 0, 1, 1, 1, 1, 1, 1])):
             found = []
@@ -778,7 +778,8 @@ class Pictures(InTemporaryFolder):
     def test_passes_of_a_frame_may_be_one_openexr_file(self):
         self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--passes", "all", "--pass-format", "exr").returncode, 0)
         names = [f"{kind}_{i:06}.{ending}" for i in range(6) for kind, ending in (("frame", "png"), ("passes", "exr"), ("instances", "json"))]
-        self.assertEqual(sorted(os.listdir(self.path("f"))), sorted(names + ["camera.json", "events.json"]))
+        self.assertEqual(sorted(os.listdir(self.path("f"))),
+                         sorted(names + ["camera.json", "events.json", "trajectory.sqlite", "truth.json"]))
         self.assertEqual(content(self.path("f/passes_000000.exr"))[:4], b"\x76\x2f\x31\x01")
         self.refuses(2, ["--pass-format", "npy and exr"], "render", self.scene, "-o", self.path("g"), "--passes", "all", "--pass-format", "tiff")
         self.refuses(5, ["passes_000005.exr"], "render", self.scene, "-o", self.path("f"), "--passes", "depth", "--pass-format", "exr")
@@ -789,7 +790,7 @@ class Pictures(InTemporaryFolder):
         os.remove(self.path("f/depth_000001.npy"))
         old = {name: os.stat(self.path("f/" + name)).st_mtime_ns for name in os.listdir(self.path("f"))}
         self.assertEqual(cradle(*command, "--skip-existing").returncode, 0)
-        self.assertEqual(len(os.listdir(self.path("f"))), 6 * 3 + 2)
+        self.assertEqual(len(os.listdir(self.path("f"))), 6 * 3 + 4)
         again = {name for name, time_ in old.items() if os.stat(self.path("f/" + name)).st_mtime_ns != time_}
         self.assertEqual(again, {"frame_000001.png", "instances_000001.json"})
         self.assertEqual(cradle(*command, "--skip-existing").returncode, 0)  # nothing is left to do
