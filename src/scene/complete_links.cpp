@@ -142,8 +142,13 @@ void complete(LinkDraft& link, SceneDraft& scene, FaultList& faults) {
 }  // namespace
 
 void completeLinks(SceneDraft& draft, FaultList& faults) {
+  std::size_t picks = 0;
   for (LinkDraft& link : draft.links) {
     if (link.isSettled || !link.isSound) continue;
+    if ((link.anchorA.pick || link.anchorB.pick) && ++picks > kMaxPicks)
+      return addFault(
+          faults, link.field,
+          fmt::format("from here on, more than {} links have ends that are picked; give points", kMaxPicks));
     if (isKnown(link.anchorA, draft) && isKnown(link.anchorB, draft)) complete(link, draft, faults);
   }
 }

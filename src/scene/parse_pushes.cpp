@@ -101,6 +101,12 @@ void parsePushes(ObjectReader& root, SceneDraft& draft) {
 }
 
 void completePushes(SceneDraft& draft, FaultList& faults) {
+  if (draft.pushes.size() > kMaxPicks)
+    return addFault(
+        faults, draft.pushes[kMaxPicks].field,
+        fmt::format("from here on, more than {} pushes are picked, or have a ray and no body; name the body "
+                    "and point of those that are left",
+                    kMaxPicks));
   for (const PushDraft& found : draft.pushes) {
     Push& push = draft.scene.pushes[found.push];
     if (found.pick && found.namesBody) {

@@ -9,6 +9,8 @@ namespace cradle {
 
 // Points of bodies that are given by a pixel of a picture: what a user sees there.
 
+constexpr std::size_t kMaxPicks = 1000;  // links, or pushes: each looks at all bodies and their triangles
+
 /// `{"frame": 0, "pixel": [640, 360]}`: what a pixel of a picture shows, in place of a point. Nothing, and a fault, if
 /// it is none.
 std::optional<PixelPick> parsePick(const Field& field, FaultList& faults);

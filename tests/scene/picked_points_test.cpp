@@ -77,5 +77,17 @@ TEST(PickedPoints, ARayWithoutABodyStopsAtTheFirst) {
   EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("the push moves nothing, because body \"floor\" is static")));
 }
 
+TEST(PickedPoints, AreNotTooMany) {
+  const auto many = [](const std::string& key, const std::string& item) {
+    std::string list = item;
+    for (std::size_t i = 0; i < kMaxPicks; ++i) list += "," + item;
+    return sceneWith(kCamera + R"("bodies": [{"name": "a", "shape": {"sphere": {}}}], ")" + key + "\": [" + list + "]");
+  };
+  EXPECT_THAT(errorOf(many("pushes", R"({"pick": {"pixel": [100, 100]}})")).what(),
+              HasSubstr("/pushes/1000: from here on, more than 1000 pushes are picked"));
+  EXPECT_THAT(errorOf(many("springs", R"({"bodyA": "a", "anchorA": {"pick": {"pixel": [100, 100]}}})")).what(),
+              HasSubstr("/springs/1000: from here on, more than 1000 links"));
+}
+
 }  // namespace
 }  // namespace cradle
