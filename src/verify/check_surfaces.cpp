@@ -265,7 +265,7 @@ void SurfaceCheck::checkCoordinates(const PixelRay& at) {
 void SurfaceCheck::checkSilhouettes() {
   const std::string file = truthFileName("instances", frame_.number);
   for (std::size_t i = 0; i < solids_.size(); ++i) {
-    const auto& [sure, possible] = silhouettes_[i];
+    const Cover &sure = silhouettes_[i].sure, &possible = silhouettes_[i].possible;
     const auto& annotations = frame_.instances.annotations;
     const auto record = std::find_if(annotations.begin(), annotations.end(), [&](const InstanceRecord& candidate) {
       return candidate.id == solids_[i].body() + 1;
