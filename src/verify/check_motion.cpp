@@ -7,12 +7,13 @@
 #include <map>
 
 #include "verify/placed_solid.h"
+#include "verify/single_precision.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kSinglePart = 1.2e-7;   // as in check_surfaces.cpp
-constexpr double kDoublePart = 4e-15;    // a dozen operations
+constexpr double kSingleRatio = 1.2e-7;  // as in check_surfaces.cpp
+constexpr double kDoubleRatio = 4e-15;   // a dozen operations
 constexpr double kStandingStill = 1e-9;  // pixels: what moves by less than this is written as what does not
 constexpr double kSurelyBefore = 1e-5;   // of the depth: what the rounding of a place changes on a slanted surface
 constexpr double kEdgeShare = 0.01;      // of the pixels of an id that may be in parts thinner than a pixel
@@ -151,8 +152,8 @@ bool MotionCheck::isFollowed(std::size_t pixel) const {
 
 Destination MotionCheck::skyIn(const TruthCamera& to, const Vec3& ray) const {
   const Vec3 seen = to.seenDirection(ray);
-  Destination destination{seen.z(), seen.hnormalized(), seen.z() > 0, std::abs(seen.z()) > kDoublePart, 0};
-  destination.tolerance = kDoublePart * (to.focal() + destination.place.norm()) / std::abs(seen.z());
+  Destination destination{seen.z(), seen.hnormalized(), seen.z() > 0, std::abs(seen.z()) > kDoubleRatio, 0};
+  destination.tolerance = kDoubleRatio * (to.focal() + destination.place.norm()) / std::abs(seen.z());
   return destination;
 }
 
@@ -167,13 +168,13 @@ Destination MotionCheck::destinationOf(std::size_t pixel, const Eigen::Vector2d&
     const Vec3 local = from.rotation.toRotationMatrix().transpose() * (point - from.translation);
     return to.camera.seen(at.rotation.toRotationMatrix() * local + at.translation);
   };
-  const Vec3 seen = seenAt(depths_[pixel]), farther = seenAt(depths_[pixel] * (1 + kSinglePart));
+  const Vec3 seen = seenAt(depths_[pixel]), farther = seenAt(depths_[pixel] * (1 + kSingleRatio));
   const double size = camera_.position().norm() + to.camera.position().norm() + depths_[pixel] * ray.norm() +
                       from.translation.norm() + at.translation.norm();
   Destination destination{seen.z(), seen.hnormalized(), seen.z() > 0, true, 0};
-  destination.isSure = std::abs(seen.z()) > 2 * std::abs(farther.z() - seen.z()) + kDoublePart * size;
+  destination.isSure = std::abs(seen.z()) > 2 * std::abs(farther.z() - seen.z()) + kDoubleRatio * size;
   destination.tolerance = (farther.hnormalized() - destination.place).norm() +
-                          kDoublePart * size * (to.camera.focal() + destination.place.norm()) / std::abs(seen.z());
+                          kDoubleRatio * size * (to.camera.focal() + destination.place.norm()) / std::abs(seen.z());
   return destination;
 }
 
@@ -201,7 +202,7 @@ void MotionCheck::checkFlow(const std::vector<float>& flow, const char* kind, As
     if (!destination.isInFront) return expectNone(found, aspect, "NaN, for it is behind the camera");
     const bool isStill = rests(at.pixel, *to);
     const Eigen::Vector2d expected = isStill ? Eigen::Vector2d(0, 0) : Eigen::Vector2d(destination.place - at.centre);
-    const double tolerance = isStill ? 0 : destination.tolerance + kSinglePart * expected.norm() + kStandingStill;
+    const double tolerance = isStill ? 0 : destination.tolerance + kSingleRatio * expected.norm() + kStandingStill;
     findings_.add(aspect, (found.shift - expected).norm(), tolerance, [&] {
       return Fault{found.place, wordsOfShift(found.shift),
                    fmt::format("{} of id {}", wordsOfShift(expected), frame_.ids[at.pixel])};
@@ -277,7 +278,8 @@ void MotionCheck::checkHidden() {
   count.report(Aspect::hidden, kTouchingShare, count.values, findings_);
 }
 
-/// Whether the pixels around a place in the next frame show an id at a depth; nothing where they do not all show one.
+/// Whether the pixels around a place in the next frame show an id at a depth; nothing where they do not all show one,
+/// or all a link: between its wires, if they are thinner than a pixel, the other may be seen.
 std::optional<bool> MotionCheck::agreesWithNext(int id, const Destination& moved) const {
   const long column = static_cast<long>(std::floor(moved.place.x())),
              row = static_cast<long>(std::floor(moved.place.y()));
@@ -293,6 +295,7 @@ std::optional<bool> MotionCheck::agreesWithNext(int id, const Destination& moved
       least = std::min(least, static_cast<double>(next_->depth[at(x, y)]));
       most = std::max(most, static_cast<double>(next_->depth[at(x, y)]));
     }
+  if (shown != id && shown >= kFirstIdOfLinks) return std::nullopt;
   if (shown != id) return false;
   const double slack = (most - least) + kSurelyBefore * moved.depth;  // a surface that bends between the centres
   return id == 0 || next_->depth.empty() || (moved.depth >= least - slack && moved.depth <= most + slack);

@@ -6,15 +6,14 @@
 #include <cmath>
 
 #include "verify/placed_solid.h"
+#include "verify/single_precision.h"
 
 namespace cradle {
 namespace {
 
-// A number of single precision is within 6e-8 of what it stands for; doubled, for the way there in double precision.
-constexpr double kSingle = 1.2e-7;
-constexpr double kDouble = 1e-14;         // a dozen operations in double precision, and then some
-constexpr double kBefore = 2 * kSingle;   // of the depth, by which something is surely before what is seen
-constexpr double kAwayFromCamera = 1e-6;  // cosine between a normal and the view, of a surface seen along itself
+constexpr double kDouble = 1e-14;             // a dozen operations in double precision, and then some
+constexpr double kBefore = 2 * kSingleRatio;  // of the depth, by which something is surely before what is seen
+constexpr double kAwayFromCamera = 1e-6;      // cosine between a normal and the view, of a surface seen along itself
 
 std::string wordsOf(const Vec3& vector) {
   return fmt::format("[{:.9g} {:.9g} {:.9g}]", vector.x(), vector.y(), vector.z());
@@ -127,7 +126,7 @@ void SurfaceCheck::checkSkyAndSides(const PixelRay& at) {
   if (!frame_.depth.empty()) {
     const double depth = static_cast<double>(frame_.depth[at.pixel]);
     const bool isRight = id == 0 ? depth == std::numeric_limits<double>::infinity() : depth > 0 && std::isfinite(depth);
-    findings_.add(Aspect::depth, isRight ? 0 : 1, kSingle, [&] {
+    findings_.add(Aspect::depth, isRight ? 0 : 1, kSingleRatio, [&] {
       return Fault{placeIn("depth", at), fmt::format("{} m", depth),
                    id == 0 ? "inf, for the sky" : "a finite depth of " + nameOfId(id)};
     });
@@ -135,12 +134,12 @@ void SurfaceCheck::checkSkyAndSides(const PixelRay& at) {
   if (frame_.normal.empty()) return;
   const Vec3 normal = vectorAt(frame_.normal, at.pixel);
   if (id == 0) {
-    findings_.add(Aspect::normal, normal.array().isNaN().all() ? 0 : 1, kSingle, [&] {
+    findings_.add(Aspect::normal, normal.array().isNaN().all() ? 0 : 1, kSingleRatio, [&] {
       return Fault{placeIn("normal", at), wordsOf(normal), "NaN, for the sky"};
     });
     return;
   }
-  findings_.add(Aspect::normal, std::abs(normal.norm() - 1), 2 * kSingle, [&] {
+  findings_.add(Aspect::normal, std::abs(normal.norm() - 1), 2 * kSingleRatio, [&] {
     return Fault{placeIn("normal", at), fmt::format("{} of length {:.9g}", wordsOf(normal), normal.norm()), "length 1"};
   });
   const double away = normal.dot(at.ray.direction.normalized());
@@ -185,7 +184,7 @@ void SurfaceCheck::checkOwn(const PlacedSolid& solid, const DepthRange& range, c
   if (!frame_.depth.empty()) {
     const double depth = static_cast<double>(frame_.depth[at.pixel]);
     const double beyond = std::max({0.0, range.least - depth, depth - range.most});
-    findings_.add(Aspect::depth, std::isnan(depth) ? depth : beyond / range.most, kSingle, [&] {
+    findings_.add(Aspect::depth, std::isnan(depth) ? depth : beyond / range.most, kSingleRatio, [&] {
       return Fault{placeIn("depth", at), fmt::format("{:.9g} m", depth),
                    fmt::format("{:.9g} m, where the ray meets {}", range.middle(), nameOfId(solid.body() + 1))};
     });
@@ -222,11 +221,11 @@ void SurfaceCheck::checkMesh(const PixelRay& at) {
   if (!std::isfinite(depth)) return;  // told as a fault already
   const Vec3 local = bodyFromWorld * (at.ray.origin + depth * at.ray.direction - place.translation);
   const double far = at.ray.origin.norm() + place.translation.norm() + depth * at.ray.direction.norm();
-  const double reach = kSingle * depth * at.ray.direction.norm() + kDouble * far;
+  const double reach = kSingleRatio * depth * at.ray.direction.norm() + kDouble * far;
   const Vec3 normal = frame_.normal.empty() ? Vec3(Vec3::Zero()) : vectorAt(frame_.normal, at.pixel);
   const DrawnSurface::Match match =
       film_.meshes[static_cast<std::size_t>(model->model)].match(local, bodyFromWorld * normal, reach, kDouble * far);
-  findings_.add(Aspect::depth, match.distance / (reach / kSingle), kSingle, [&] {
+  findings_.add(Aspect::depth, match.distance / (reach / kSingleRatio), kSingleRatio, [&] {
     return Fault{placeIn("depth", at), fmt::format("{:.9g} m", depth),
                  fmt::format("a depth on the surface of {}, {:.3g} m or more away", nameOfId(frame_.ids[at.pixel]),
                              match.distance)};
@@ -244,7 +243,7 @@ void SurfaceCheck::checkCoordinates(const PixelRay& at) {
   if (frame_.objectCoordinates.empty() || id == kUnknownId || isNothing) return;
   const Vec3 local = vectorAt(frame_.objectCoordinates, at.pixel);
   if (id == 0 || id >= kFirstIdOfLinks) {
-    findings_.add(Aspect::objectCoordinates, local.array().isNaN().all() ? 0 : 1, kSingle, [&] {
+    findings_.add(Aspect::objectCoordinates, local.array().isNaN().all() ? 0 : 1, kSingleRatio, [&] {
       return Fault{placeIn("objectCoordinates", at), wordsOf(local), "NaN, for " + nameOfId(id)};
     });
     return;
@@ -255,7 +254,7 @@ void SurfaceCheck::checkCoordinates(const PixelRay& at) {
   const Vec3 seen = at.ray.origin + depth * at.ray.direction;
   const double size = local.norm() + depth * at.ray.direction.norm() +
                       1e-8 * (at.ray.origin.norm() + place.translation.norm());  // double precision beside single
-  findings_.add(Aspect::objectCoordinates, (point - seen).norm(), kSingle * size, [&] {
+  findings_.add(Aspect::objectCoordinates, (point - seen).norm(), kSingleRatio * size, [&] {
     return Fault{placeIn("objectCoordinates", at), fmt::format("{}, in the world {}", wordsOf(local), wordsOf(point)),
                  fmt::format("{} in the world, of {}", wordsOf(seen), nameOfId(id))};
   });

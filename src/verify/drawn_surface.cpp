@@ -5,12 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "verify/single_precision.h"
+
 namespace cradle {
 namespace {
 
-constexpr int kMostCells = 48;           // along an axis: 3 MB of empty cells
-constexpr double kFarther = 1000;        // reaches within which the distance of a point off the surface is looked for
-constexpr double kSingleFacet = 1.8e-7;  // as kSingleNormal in placed_solid.cpp
+constexpr int kMaxCells = 48;      // along an axis: 3 MB of empty cells
+constexpr double kFarther = 1000;  // reaches within which the distance of a point off the surface is looked for
 
 double distanceToSegment(const Vec3& point, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;
@@ -39,7 +40,7 @@ double distanceToTriangle(const Vec3& point, const Corners& corners) {
 DrawnSurface::DrawnSurface(const DrawnMesh& mesh) : mesh_(mesh) {
   for (const Vec3& vertex : mesh.vertices) bounds_.extend(vertex);
   const double triangles = static_cast<double>(mesh.triangles.size());
-  cellsAlong_ = std::clamp(static_cast<int>(2 * std::cbrt(triangles)), 1, kMostCells);
+  cellsAlong_ = std::clamp(static_cast<int>(2 * std::cbrt(triangles)), 1, kMaxCells);
   cell_ = (bounds_.sizes() / cellsAlong_).cwiseMax(1e-300);
   inCell_.resize(static_cast<std::size_t>(cellsAlong_) * static_cast<std::size_t>(cellsAlong_) *
                  static_cast<std::size_t>(cellsAlong_));
@@ -67,7 +68,7 @@ void DrawnSurface::visitNear(const Bounds& box, const Visit& visit) const {
 
 DrawnSurface::Match DrawnSurface::match(const Vec3& point, const Vec3& normal, double reach, double rounding) const {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  Match best{kFarther * reach, kInfinite, kSingleFacet};
+  Match best{kFarther * reach, kInfinite, kSingleNormal};
   const auto look = [&](double around) {
     const Vec3 half = Vec3::Constant(around);
     visitNear(Bounds(point - half, point + half), [&](std::size_t cell) {
@@ -81,7 +82,7 @@ DrawnSurface::Match DrawnSurface::match(const Vec3& point, const Vec3& normal, d
         const double longest = std::max(
             {(corners[1] - corners[0]).norm(), (corners[2] - corners[0]).norm(), (corners[2] - corners[1]).norm()});
         const Vec3 facet = area.normalized();
-        const double tolerance = kSingleFacet + rounding * longest / area.norm();  // of the least height
+        const double tolerance = kSingleNormal + rounding * longest / area.norm();  // of the least height
         const double deviation = std::min((normal - facet).norm(), (normal + facet).norm());
         if (!(deviation / tolerance < best.normalDeviation / best.normalTolerance)) continue;
         best.normalDeviation = deviation;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "verify/single_precision.h"
+
 namespace cradle {
 namespace {
 
@@ -13,7 +15,6 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // and shift it in a dozen operations of 1.1e-16 each. A thousand times that is still far below single precision.
 constexpr double kPlaceRounding = 1e-12;
 constexpr double kSlopeRounding = 1e-14;  // of the cosine between a ray and a plane's normal
-constexpr double kSingleNormal = 1.8e-7;  // three components of single precision, and their rounding on the way
 constexpr double kGrazing = 1e-6;         // cosine to the view below which a normal's side is not told
 constexpr double kSteepestGround = 0.3;   // cosine between up and the normal of a plane that is the ground
 

@@ -148,6 +148,20 @@ class RightTruth(InFolder):
         values = self.verifies(self.render("turned", self.write("turned.json", document), "all"))
         self.assertGreater(values["reprojection"], 10000)
 
+    def test_what_is_seen_between_wires_thinner_than_a_pixel_holds(self):
+        prism = os.path.join(SOURCE, "assets", "l_prism.3ds")
+        bodies = [{"name": "ground", "shape": {"plane": {}}, "motion": "static"},
+                  {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0.4, 0], "linearVelocity": [-0.5, 0, 0]},
+                  {"name": "can", "shape": {"cylinder": {"radius": 0.08, "length": 0.2}}, "position": [-0.3, 0.3, 0.1], "angularVelocity": [1, 2, 3]},
+                  {"name": "pill", "shape": {"capsule": {"radius": 0.05, "length": 0.2}}, "position": [0.3, 0.3, 0.1], "angularVelocity": [3, 2, 1]},
+                  {"name": "prism", "shape": {"mesh": prism}, "position": [0.1, 0.5, -0.4]}]
+        document = everything(duration=0.2, accuracy="visual", output={"framesPerSecond": 60, "width": 160, "height": 90}, rods=[],
+                              bodies=bodies, springs=[{"bodyA": "ball", "anchorB": [0, 1, 0]}])
+        del document["camera"]
+        path = self.write("wires.json", document)
+        checked = self.verifies(self.render("wires", path, "all"))
+        self.assertGreater(checked["reprojection"], 50000)
+
     def test_a_still_camera_and_one_that_is_chosen_hold(self):
         still = {"position": [0.5, 1.4, 3.2], "target": [0, 0.7, 0], "verticalFieldOfViewDegrees": 55}
         self.verifies(self.render("still", self.write("still.json", everything(camera=still)), "all", "--frames", "0:3"))
