@@ -49,7 +49,8 @@ FilmDrawer::FilmDrawer(TrajectorySource& trajectory, const PictureOrder& order, 
                         order.size.height,
                         [this](long number) { return source_.drawnFrameAt(number); },
                         source_.frameCount(),
-                        source_.isWhole() ? source_.drawnEvents() : std::vector<Event>()};
+                        source_.isWhole() ? source_.drawnEvents() : std::vector<Event>(),
+                        [this](long number) { return source_.drawnContactsAt(number); }};
   overlay_.emplace(film, *order.overlays);
 }
 

@@ -117,9 +117,12 @@ bool isBeingFilled(const std::string& path) {
 
 void copyTrajectory(const TrajectoryReader& trajectory, const std::string& path) {
   TrajectoryWriter writer(path, trajectory.header());
-  for (long frame = 0; frame < trajectory.frameCount(); ++frame) {
+  for (const LastingContact& contact : trajectory.contacts()) writer.append(contact);
+  for (long number = 0; number < trajectory.frameCount(); ++number) {
     throwIfInterrupted();
-    writer.append(trajectory.readFrame(frame));
+    Frame frame = trajectory.readFrame(number);
+    frame.contacts = trajectory.contactsAt(number);
+    writer.append(frame);
   }
   for (const Event& event : trajectory.events()) writer.append(event);
   writer.finish(trajectory.cost());

@@ -159,6 +159,7 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, St
                             [&](const PromiseEnd& end) {
                               if (watch) watch->note(end);
                             },
+                            [&](const LastingContact& contact) { writer.append(contact); },
                             [&](double time) { progress.showTime(time); }};
   const RunCost cost = simulate(scene, world, sink);
   if (watch) watch->finish();

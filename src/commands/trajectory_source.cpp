@@ -124,6 +124,13 @@ std::vector<Event> TrajectorySource::drawnEvents() const {
   return drawn(reader_->events());
 }
 
+std::vector<ContactWrench> TrajectorySource::drawnContactsAt(long number) const {
+  std::vector<ContactWrench> contacts = reader_->contactsAt(number);
+  if (upright_)
+    for (ContactWrench& wrench : contacts) wrench = turned(upright_->fromWorld, wrench);
+  return contacts;
+}
+
 /// Calls simulateInto(writer, world).
 template <class Simulate>
 void TrajectorySource::simulateBy(const Simulate& simulateInto) {

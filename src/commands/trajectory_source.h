@@ -36,7 +36,8 @@ class TrajectorySource {
   Quat worldFromDrawn() const { return upright_ ? upright_->fromWorld.conjugate() : Quat::Identity(); }
   Frame drawnFrameAt(long number);
   std::vector<Event> drawnPushEvents();
-  std::vector<Event> drawnEvents() const;  // of a whole trajectory
+  std::vector<Event> drawnEvents() const;                         // of a whole trajectory
+  std::vector<ContactWrench> drawnContactsAt(long number) const;  // the same
 
   /// Known before the simulation, too.
   long frameCount() const { return frameCount_; }

@@ -126,6 +126,7 @@ void SoftContactSolver::sweep(const SolverMotions& motions, WorkerThreads& threa
 }
 
 void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions, WorkerThreads& threads) {
+  subSteps_ = steps.count;
   const Lanes subStep = same(steps.subStep);
   const auto softness = [&](int points) { return softnessOf(points, steps.subStep, scale_); };
   const Softness soft[] = {softness(1), softness(2), softness(3), softness(4)};
@@ -178,6 +179,29 @@ SoftContactSolver::Taken SoftContactSolver::taken() const {
       }
   });
   return sum;
+}
+
+std::vector<SoftContactSolver::MeanLoad> SoftContactSolver::meanLoads(std::size_t manifolds) const {
+  std::vector<MeanLoad> loads(manifolds);
+  const double rate = 1 / (subSteps_ * subStep_);
+  forEachList(lists_, [&]<class Block>(const BlockList<Block>& list) {
+    for (std::size_t i = 0; i < list.size; ++i) {
+      const Block& block = list.blocks[i];
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if (block.manifolds[lane] < 0) continue;
+        MeanLoad& load = loads[static_cast<std::size_t>(block.manifolds[lane])];
+        load.points = Block::kPoints;
+        for (int k = 0; k < Block::kPoints; ++k)
+          load.forces[static_cast<std::size_t>(k)] = rate * block.points[k].total[lane];
+        for (int k = 0; k < 2; ++k) {
+          const LaneVector& t = block.friction.tangents[k];
+          load.frictionForce += rate * block.friction.totals[k][lane] * Vec3(t.x[lane], t.y[lane], t.z[lane]);
+        }
+        if constexpr (Block::kPoints > 1) load.twist = rate * block.twist.total[lane];
+      }
+    }
+  });
+  return loads;
 }
 
 void SoftContactSolver::store(std::vector<PersistentManifold>& manifolds, WorkerThreads& threads) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <tuple>
 #include <vector>
 
@@ -35,6 +36,16 @@ class SoftContactSolver {
   };
   Taken taken() const;
 
+  /// What a manifold carried in the last step, in the mean.
+  struct MeanLoad {
+    int points = 0;                                              // of the manifold; 0: it took no part
+    std::array<double, PredictedManifold::kMaxPoints> forces{};  // N, along the normal, at each
+    Vec3 frictionForce = Vec3::Zero();                           // N, world, on B at the middle of the points
+    double twist = 0;                                            // N m, about the normal, on B
+  };
+  /// Of so many manifolds, by their indices.
+  std::vector<MeanLoad> meanLoads(std::size_t manifolds) const;
+
   /// Forces of the last sub-step, for the next step.
   void store(std::vector<PersistentManifold>& manifolds, WorkerThreads& threads) const;
 
@@ -68,6 +79,7 @@ class SoftContactSolver {
   std::vector<Task> tasks_;
   std::size_t colors_ = 0;
   double subStep_ = 0;  // s, of the blocks' impulses
+  int subSteps_ = 0;    // in the last step
 };
 
 }  // namespace cradle

@@ -49,6 +49,14 @@ class SoftContacts {
   };
   std::vector<Meeting> meetings(double slowest) const;
 
+  /// Calls visit(pair, manifold, isExchanged) for each pair of colliders in contact, with the index of its manifold,
+  /// whose A is the pair's second if it is exchanged; sleepers too.
+  template <class Visit>
+  void forEachContact(const Visit& visit) const {
+    for (const NearPair& pair : pairs_)
+      if (!pair.isEmpty) visit(geometry_.pairs[pair.pair], pair.manifold, pair.isExchanged);
+  }
+
   /// Calls visit(a, b) for each two moving bodies that are in contact, sleepers too.
   template <class Visit>
   void forEachTouching(const Visit& visit) const {

@@ -10,7 +10,8 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kBodyGrain = 256;  // bodies that a thread takes at once: tens of microseconds
+constexpr double kRestSubStep = 1.0 / 480;  // s, for loads at rest
+constexpr std::size_t kBodyGrain = 256;     // bodies that a thread takes at once: tens of microseconds
 
 std::vector<double> massesOf(const std::vector<RigidBody>& bodies) {
   std::vector<double> masses;
@@ -159,10 +160,19 @@ void SoftStep::placeBody(std::size_t index, const VectorX& state) {
   pose.boxHalf = pose.rotation.cwiseAbs() * (bounds_[index].sizes() / 2);
   Mat3& axes = worldFromPrincipal_[index];
   if (!bodies_[index].isSpherical) axes = pose.rotation * principalAxes_[index];
-  const Vec3& roots = rootMoments_[index];
-  solverBodies_[index] = {bodies_[index].inverseMass, Mat3(roots.cwiseInverse().asDiagonal() * axes.transpose()),
-                          pose.rotation};
-  motions_.starts[index] = motionOf(pose.linearVelocity, roots.cwiseProduct(axes.transpose() * pose.angularVelocity));
+  solverBodies_[index] = solverBody(index);
+  motions_.starts[index] =
+      motionOf(pose.linearVelocity, rootMoments_[index].cwiseProduct(axes.transpose() * pose.angularVelocity));
+}
+
+/// A body where it was placed, and one that nothing moves.
+SolverBody SoftStep::solverBody(std::size_t index) const {
+  const Vec3 inverseRoots = rootMoments_[index].cwiseInverse();
+  return {bodies_[index].inverseMass, Mat3(inverseRoots.asDiagonal() * worldFromPrincipal_[index].transpose()),
+          poses_[index].rotation};
+}
+SolverBody SoftStep::stillBody(std::size_t index) const {
+  return {0, Mat3(Mat3::Zero()), poses_[index].rotation};
 }
 
 void SoftStep::moveBody(std::size_t index, double timeStep, double subStep, VectorX& state) {
@@ -190,6 +200,27 @@ void SoftStep::moveBody(std::size_t index, double timeStep, double subStep, Vect
     spin = std::sqrt(momentum.dot(spin) / momentum.dot(next)) * next;
   }
   angularVelocity(state, body) = spin;
+}
+
+std::vector<SoftContactSolver::MeanLoad> SoftStep::loadsAtRest(int subSteps) {
+  std::vector<ManifoldLink> links;
+  contacts_.forEachContact([&](const ColliderPair&, std::int32_t index, bool) {
+    const PersistentManifold& manifold = contacts_.manifolds()[static_cast<std::size_t>(index)];
+    links.push_back({index, manifold.bodyA, manifold.bodyB, manifold.count});
+  });
+  SolverMotions motions;
+  motions.resize(bodies_.size());
+  std::vector<SolverBody> bodies(bodies_.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    motions.pulls[i] = isLed_[i] ? SolverMotions::Pull::asleep : SolverMotions::Pull::gravity;
+    bodies[i] = isLed_[i] ? stillBody(i) : solverBody(i);
+  }
+  ContactColoring coloring;
+  SoftContactSolver solver(scale_);
+  const double subStep = scale_.time * kRestSubStep;
+  solver.prepare(coloring.color(links, bodies_.size()), contacts_.manifolds(), bodies, subStep, threads_);
+  solver.solve({subStep, subSteps, INFINITY, false}, gravity_, motions, threads_);
+  return solver.meanLoads(contacts_.manifolds().size());
 }
 
 /// The force of the last sub-step stands for all: where bodies meet fast, a look has few.
@@ -261,7 +292,7 @@ void SoftStep::letSleep(double timeStep, VectorX& state) {
     poses_[sleeper].spinSpeed = 0;
     poses_[sleeper].isAsleep = true, motions_.pulls[sleeper] = SolverMotions::Pull::asleep,
     motions_.starts[sleeper] = {};
-    solverBodies_[sleeper] = {0, Mat3(Mat3::Zero()), poses_[sleeper].rotation};
+    solverBodies_[sleeper] = stillBody(sleeper);
   }
 }
 

@@ -26,9 +26,16 @@ class SoftStep {
 
   const SoftScale& scale() const { return scale_; }
   bool allAsleep() const { return sleep_.awake() == 0; }
+  std::size_t awake() const { return static_cast<std::size_t>(sleep_.awake()); }  // bodies
   bool isAsleep(std::size_t body) const { return sleep_.isAsleep(body); }
   /// The contacts of the last detection.
   const SoftContacts& contacts() const { return contacts_; }
+  /// What contacts of bodies awake did after the last detection, by manifolds.
+  std::vector<SoftContactSolver::MeanLoad> meanLoads() const { return solver_.meanLoads(contacts_.manifolds().size()); }
+  /// What contacts do that hold all bodies still where they are, by manifolds: in the mean of so many sub-steps from
+  /// rest, which change nothing. What these leave of the velocities is small, as all that sleep are near rest.
+  std::vector<SoftContactSolver::MeanLoad> loadsAtRest(int subSteps);
+
   /// How often contacts were detected so far.
   long detections() const { return detections_; }
 
@@ -49,6 +56,8 @@ class SoftStep {
  private:
   void placeBodies(double timeStep, const VectorX& state);
   void placeBody(std::size_t index, const VectorX& state);
+  SolverBody solverBody(std::size_t index) const;
+  SolverBody stillBody(std::size_t index) const;
   void takeSubstepGroup(double timeStep, int subSteps, int substepGroups, VectorX& state);
   void moveBody(std::size_t index, double timeStep, double subStep, VectorX& state);
   void recordImpacts(double timeStep);

@@ -21,14 +21,14 @@ constexpr double kTrailSeconds = 1.2, kContactSeconds = 0.25;
 constexpr long kMaxTrailPoints = 120;
 constexpr double kSmoothTurn = 0.7;  // change of velocity between frames, of the velocity: below, no impact
 // Of arrowUnit().
-constexpr double kLongestVelocity = 0.22, kLongestImpulse = 0.14;
+constexpr double kLongestVelocity = 0.22, kLongestImpulse = 0.14, kLongestForce = 0.14;
 // Of the picture's height.
-constexpr double kTrailWidth = 0.008, kArrowWidth = 0.0075, kDotRadius = 0.006, kImpulseText = 0.028;
-constexpr double kPanelGap = 0.015;          // between time and plot, of the picture's height
-constexpr double kMinMark = 0.35;            // of an impact, in terms of that of the film's greatest
-constexpr std::size_t kMaxImpulseTexts = 4;  // the greatest ones of a picture: more would hide each other
-constexpr double kShortestText = 0.05;       // of the film's greatest impulse: below, a number says nothing
-const Ink kVelocity{{0, 128, 96}, 1}, kImpulse{{200, 16, 46}, 1};
+constexpr double kTrailWidth = 0.008, kArrowWidth = 0.0075, kDotRadius = 0.006, kLoadText = 0.028;
+constexpr double kPanelGap = 0.015;       // between time and plot, of the picture's height
+constexpr double kMinMark = 0.35;         // of an impact or force, in terms of that of the film's greatest
+constexpr std::size_t kMaxLoadTexts = 4;  // the greatest ones of a picture: more would hide each other
+constexpr double kShortestText = 0.05;    // of the film's greatest impulse or force: below, a number says nothing
+const Ink kVelocity{{0, 128, 96}, 1}, kImpulse{{200, 16, 46}, 1}, kForce{{20, 70, 200}, 1};
 const Ink kLabelPanel{{18, 22, 30}, 0.88}, kLabelWords{{255, 255, 255}, 1}, kHalo{{255, 255, 255}, 0.7};
 // Colours that people with any colour vision tell apart (M. Okabe, K. Ito, "Color Universal Design", 2008).
 const std::array<Ink, 6> kTrailInks = {Ink{{0, 114, 178}},   Ink{{230, 159, 0}},  Ink{{120, 94, 240}},
@@ -82,12 +82,16 @@ FilmOverlay::FilmOverlay(const FilmRecord& film, const OverlayChoice& choice)
       choice_(choice),
       view_(film.view),
       frameAt_(film.frameAt),
+      contactsAt_(film.contactsAt),
       camera_(scene_, view_.camera, frameAt_) {
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
     if (scene_.bodies[i].motion != Motion::fixed) movingBodies_.push_back(static_cast<int>(i));
   for (const Event& event : film.events)
     if (event.kind == EventKind::impact && event.impulse > 0) impacts_.push_back(event);
   for (const Event& event : impacts_) greatestImpulse_ = std::max(greatestImpulse_, event.impulse);
+  for (long number = 0; choice_.contacts && number < film.frameCount; ++number)
+    for (const ContactWrench& wrench : contactsAt_(number))
+      greatestForce_ = std::max(greatestForce_, wrench.force.norm());
   arrowUnit_ = arrowUnit(view_);
   const double perSecond = scene_.output.framesPerSecond;
   trailStride_ = std::max(1L, static_cast<long>(std::ceil(kTrailSeconds * perSecond / kMaxTrailPoints)));
@@ -224,11 +228,40 @@ void FilmOverlay::drawVelocities(const Frame& frame, const Lens& lens, Canvas& c
   }
 }
 
+void FilmOverlay::drawContacts(const Frame& frame, const Lens& lens, Canvas& canvas) const {
+  std::vector<LoadText> texts;
+  drawForces(frame, lens, canvas, texts);
+  drawImpacts(frame, lens, canvas, texts);
+  drawLoadTexts(std::move(texts), canvas);
+}
+
+/// An arrow from where bodies press each other, on each of them that moves: the force on it. Lengths go with the root
+/// of the force, as those of impacts.
+void FilmOverlay::drawForces(const Frame& frame, const Lens& lens, Canvas& canvas, std::vector<LoadText>& texts) const {
+  for (const ContactWrench& wrench : contactsAt_(frame.number)) {
+    const auto point = lens.see(wrench.point);
+    const double force = wrench.force.norm();
+    if (!point || !(force > 0)) continue;
+    const double size = std::sqrt(force / greatestForce_), length = kLongestForce * arrowUnit_ * size;
+    const double scale = kMinMark + (1 - kMinMark) * size;
+    const auto draw = [&](int body, double way) {
+      if (scene_.bodies[static_cast<std::size_t>(body)].motion == Motion::fixed) return;
+      if (const auto tip = lens.see(wrench.point + way * length / force * wrench.force))
+        drawArrow(canvas, *point, *tip, scale * kArrowWidth * lens.height, kForce);
+    };
+    draw(wrench.bodyA, -1), draw(wrench.bodyB, 1);
+    const double radius = scale * kDotRadius * lens.height;
+    canvas.disc(*point, 1.5 * radius, {{255, 255, 255}, 1});
+    canvas.disc(*point, radius, kForce);
+    if (force >= kShortestText * greatestForce_) texts.push_back({fmt::format("{:.3g} N", force), size, *point, 1});
+  }
+}
+
 /// A dot where bodies met, and an arrow to either side: what each gave the other. Lengths go with the root of the
 /// impulse, which spans decades.
-void FilmOverlay::drawContacts(const Frame& frame, const Lens& lens, Canvas& canvas) const {
+void FilmOverlay::drawImpacts(const Frame& frame, const Lens& lens, Canvas& canvas,
+                              std::vector<LoadText>& texts) const {
   const double shown = kContactSeconds * scene_.output.playbackSpeed;
-  std::vector<ImpulseText> texts;
   auto next = std::partition_point(impacts_.begin(), impacts_.end(),
                                    [&](const Event& event) { return event.time <= frame.time - shown; });
   for (; next != impacts_.end() && next->time <= frame.time; ++next) {
@@ -244,22 +277,20 @@ void FilmOverlay::drawContacts(const Frame& frame, const Lens& lens, Canvas& can
     const double radius = scale * kDotRadius * lens.height;
     canvas.disc(*point, 1.5 * radius, {{255, 255, 255}, opacity * opacity});
     canvas.disc(*point, radius, {kImpulse.color, opacity});
-    if (event.impulse >= kShortestText * greatestImpulse_) texts.push_back({event.impulse, *point, opacity});
+    if (event.impulse >= kShortestText * greatestImpulse_)
+      texts.push_back({fmt::format("{:.3g} N s", event.impulse), size, *point, opacity});
   }
-  drawImpulseTexts(std::move(texts), canvas);
 }
 
 /// The greatest first; none where another one stands.
-void FilmOverlay::drawImpulseTexts(std::vector<ImpulseText> texts, Canvas& canvas) const {
-  std::stable_sort(texts.begin(), texts.end(),
-                   [](const ImpulseText& a, const ImpulseText& b) { return a.impulse > b.impulse; });
-  const TextSize size = crispTextSize(kImpulseText * canvas.height());
+void FilmOverlay::drawLoadTexts(std::vector<LoadText> texts, Canvas& canvas) {
+  std::stable_sort(texts.begin(), texts.end(), [](const LoadText& a, const LoadText& b) { return a.size > b.size; });
+  const TextSize size = crispTextSize(kLoadText * canvas.height());
   const double padding = 0.35 * size.em, lineHeight = size.ascent + 2 * padding;
   std::vector<PicturePoint> starts;
-  for (const ImpulseText& label : texts) {
-    if (starts.size() == kMaxImpulseTexts) break;
-    const std::string text = fmt::format("{:.3g} N s", label.impulse);
-    const double width = textWidth(text, size);
+  for (const LoadText& label : texts) {
+    if (starts.size() == kMaxLoadTexts) break;
+    const double width = textWidth(label.text, size);
     const PicturePoint start{label.point.x - width / 2, label.point.y - 1.6 * size.em};
     const bool isTaken = std::any_of(starts.begin(), starts.end(), [&](const PicturePoint& other) {
       return std::abs(other.y - start.y) < lineHeight && std::abs(other.x - start.x) < width + 2.5 * padding;
@@ -269,7 +300,7 @@ void FilmOverlay::drawImpulseTexts(std::vector<ImpulseText> texts, Canvas& canva
     canvas.rectangle({start.x - padding, start.y - size.ascent - padding},
                      {start.x + width + padding, start.y + padding}, padding,
                      {kLabelPanel.color, kLabelPanel.opacity * label.opacity});
-    drawText(canvas, text, size, start, {kLabelWords.color, label.opacity});
+    drawText(canvas, label.text, size, start, {kLabelWords.color, label.opacity});
   }
 }
 

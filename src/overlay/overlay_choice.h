@@ -12,7 +12,7 @@ enum class PlotKind { energy, energyError, height };
 /// What lies on the pictures of a film.
 struct OverlayChoice {
   bool time = false;        // with the name of the scene
-  bool contacts = false;    // impacts, with their impulses
+  bool contacts = false;    // impacts with their impulses, lasting contacts with their forces
   bool velocities = false;  // arrows of all dynamic bodies
   bool trails = false;      // of their centres of mass
   std::optional<PlotKind> plot;

@@ -56,4 +56,10 @@ Event turned(const Quat& turn, Event event) {
   return event;
 }
 
+ContactWrench turned(const Quat& uprightFromWorld, ContactWrench wrench) {
+  for (Vec3* vector : {&wrench.force, &wrench.normalForce, &wrench.torque, &wrench.point})
+    *vector = uprightFromWorld * *vector;
+  return wrench;
+}
+
 }  // namespace cradle

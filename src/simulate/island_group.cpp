@@ -67,7 +67,7 @@ IslandGroup::IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly al
       twins_(clusters_.count()),
       isToldResting_(scene.bodies.size(), 0) {
   for (const int body : all_.sceneBodies) clusterOfBody_.push_back(clusters_.of(body));
-  start_ = {0, all_.state, std::vector<JointState>(all_.joints.size())};
+  start_ = {0, all_.state, std::vector<JointState>(all_.joints.size()), {}};
   DisjointSets joined(clusters_.count());
   visitNear(kApartWindows * windowLength(), kApartMargin, [&](int a, int b) { return joined.join(a, b), true; });
   regroup(setsOf(std::move(joined)));
@@ -365,7 +365,7 @@ void IslandGroup::move(Island& island, const std::vector<double>& times,
     island.snapshots.reserve(times.size());
     for (const double time : times) {
       const VectorX& state = island.solver->stateAt(time, reached);
-      island.snapshots.push_back({time, state, island.solver->jointStates()});
+      island.snapshots.push_back({time, state, island.solver->jointStates(), island.solver->contactWrenches()});
     }
     if (islands_.size() > kManyIslands) island.solver->releaseScratch();
   } catch (const Error& error) {
@@ -412,7 +412,8 @@ bool IslandGroup::joinTwins(DisjointSets& joined) {
   std::vector<Twins::Instant> events;
   for (std::size_t i = 0; i < islands_.size(); ++i)
     for (const Event& event : islands_[i].events)
-      if (const int cluster = clusterOf(event); cluster >= 0) events.push_back({event.time, cluster, i});
+      if (const int cluster = clusterOf(event); cluster >= 0 && !isOfLastingContact(event.kind))
+        events.push_back({event.time, cluster, i});
   const std::vector<std::pair<int, int>> twins = twins_.find(events);
   for (const auto& [a, b] : twins) joined.join(a, b);
   return !twins.empty();
@@ -537,7 +538,7 @@ std::vector<IslandGroup::Snapshot> IslandGroup::gather() {
   std::size_t count = islands_.front().snapshots.size();
   for (const Island& island : islands_) count = std::min(count, island.snapshots.size());
   std::vector<Snapshot> all(count, start_);
-  for (Snapshot& whole : all) whole.state.tail<kLedgerSize>() = settled_;
+  for (Snapshot& whole : all) whole.state.tail<kLedgerSize>() = settled_, whole.contacts.clear();
   for (Island& island : islands_) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const Snapshot& part = island.snapshots[i];
@@ -546,6 +547,7 @@ std::vector<IslandGroup::Snapshot> IslandGroup::gather() {
       all[i].state.tail<kLedgerSize>() += part.state.tail<kLedgerSize>();
       for (std::size_t joint = 0; joint < island.joints.size(); ++joint)
         all[i].joints[island.joints[joint]] = part.joints[joint];
+      all[i].contacts.insert(all[i].contacts.end(), part.contacts.begin(), part.contacts.end());
     }
     if (!island.snapshots.empty()) island.startLedger = island.snapshots.back().state.tail<kLedgerSize>();
     island.snapshots = {};

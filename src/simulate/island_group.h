@@ -47,6 +47,7 @@ class IslandGroup {
   /// As those of IslandSolver, of all bodies.
   const Assembly& assembly() const { return all_; }
   const std::vector<JointState>& jointStates() const { return frames_.front().joints; }
+  const std::vector<ContactWrench>& contactWrenches() const { return frames_.front().contacts; }
   long evaluations() const;
   std::vector<Event> takeEvents() { return std::exchange(events_, {}); }
   std::vector<std::string> takeWarnings() { return std::exchange(warnings_, {}); }
@@ -58,11 +59,12 @@ class IslandGroup {
 
  private:
   using Ledger = Eigen::Vector<double, kLedgerSize>;
-  /// A state of all bodies, or of those of one island, with its joints.
+  /// A state of all bodies, or of those of one island, with its joints and contacts.
   struct Snapshot {
     double time = 0;  // s
     VectorX state;
     std::vector<JointState> joints;
+    std::vector<ContactWrench> contacts;
   };
   struct Island {
     std::vector<int> clusters;  // ascending

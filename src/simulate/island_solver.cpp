@@ -317,6 +317,38 @@ VectorX IslandSolver::motorForces(double time) {
   return forces;
 }
 
+std::vector<ContactWrench> IslandSolver::contactWrenches() {
+  const bool isInside = events_ && reportedTime_ < island_.time - sameTime(reportedTime_);
+  WrenchSum sum;
+  for (const SupportForce& support : isInside ? *events_->supportsOfStep() : *island_.resting.supports())
+    sum.add(loadOf(support.contact, support.pair, support.force, island_.assembly));
+  if (steps_)
+    steps_->addMeanLoads(reportedTime_, sum);
+  else
+    addActiveLoads(isInside, sum);
+  return sum.wrenches();
+}
+
+/// Adds the forces of active contacts in the reported state; inside the last step of those that were active over it.
+void IslandSolver::addActiveLoads(bool isInside, WrenchSum& sum) {
+  const std::vector<BodiesInContact> bodies = isInside ? events_->bodiesOfStep() : events_->bodiesInContact();
+  if (bodies.empty()) return;
+  const auto evaluate = [&] { frameEquations().evaluate(reportedTime_, reported_, derivative_); };
+  frameEquations().setMotorSteps(island_.equations.motorSteps());
+  if (isInside) {
+    withForcesOfStep(evaluate);
+  } else {
+    setResting(island_.equations.resting());
+    evaluate();
+  }
+  const std::vector<ContactForce>& forces = frameEquations().contactForces();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const double sign = bodies[i].isMirrored ? 1 : -1;  // forces are on A of the constraint
+    sum.add({bodies[i].bodyA, bodies[i].bodyB, forces[i].point, sign * forces[i].normal * forces[i].direction,
+             sign * forces[i].tangential});
+  }
+}
+
 EquationsOfMotion& IslandSolver::frameEquations() {
   if (!frameEquations_) frameEquations_ = std::make_unique<EquationsOfMotion>(island_.assembly.mechanism);
   return *frameEquations_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simulate/conservation_record.h"
+#include "simulate/contact_wrenches.h"
 #include "simulate/events/event_motion.h"
 #include "simulate/joint_coordinates.h"
 #include "simulate/steps/stepped_motion.h"
@@ -72,6 +73,10 @@ class IslandSolver {
   /// The hinges and sliders of the assembly in that state. In steps of one length a motor's force is that of the step.
   const std::vector<JointState>& jointStates() const { return jointStates_; }
 
+  /// What lasting contacts do in the state of the last call of stateAt; in steps of one length, their mean over the
+  /// last kMeanTime. A contact that a joint holds is a constraint, and not among them.
+  std::vector<ContactWrench> contactWrenches();
+
   const Assembly& assembly() const { return island_.assembly; }
   long evaluations() const {
     return island_.equations.evaluations() + (frameEquations_ ? frameEquations_->evaluations() : 0);
@@ -120,6 +125,7 @@ class IslandSolver {
   void withForcesOfStep(const Evaluate& evaluate);
   void findJointStates(double time);
   VectorX motorForces(double time);
+  void addActiveLoads(bool isInside, WrenchSum& sum);
   /// For what is asked of frames: the motion knows nothing of them.
   EquationsOfMotion& frameEquations();
   void setResting(const std::vector<char>& resting);

@@ -13,6 +13,13 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kFewSupports = 12;  // whose forces are found densely
+constexpr double kMinLoadRatio =
+    1e-9;  // of the largest force that keeps bodies still: less touches, and carries nothing
+
+bool holdsAny(const SupportForce& support, const std::vector<int>& bodies) {
+  const auto isOfContact = [&](int body) { return body == support.contact.bodyA || body == support.contact.bodyB; };
+  return std::any_of(bodies.begin(), bodies.end(), isOfContact);
+}
 
 }  // namespace
 
@@ -53,7 +60,9 @@ bool RestingBodies::isSlow(std::size_t index, const VectorX& state) const {
   return speed2 < tolerances_.maxSlowSquare(sizes_[index]);
 }
 
-bool RestingBodies::canBeInEquilibrium(double time, const std::vector<int>& islands, int island, const VectorX& state) {
+/// The contact forces that keep an island still, if there are any within the friction cones.
+std::optional<std::vector<SupportForce>> RestingBodies::findEquilibrium(double time, const std::vector<int>& islands,
+                                                                        int island, const VectorX& state) {
   // Accelerations stand in for velocities: the impulses that stop them are then the forces of the equilibrium.
   VectorX derivative, accelerations = state;
   equations_.evaluate(time, state, derivative);
@@ -74,37 +83,49 @@ bool RestingBodies::canBeInEquilibrium(double time, const std::vector<int>& isla
     const Vec3 velocity = relativeVelocity(contact, state),
                slip = velocity - contact.normal.dot(velocity) * contact.normal;
     const double most = tolerances_.maxSmoothSlip(smallestSize(contact, sizes_));
-    if (frictions.back() == 0 && slip.norm() > most) return false;
+    if (frictions.back() == 0 && slip.norm() > most) return std::nullopt;
   }
-  applySupportForces(supports, frictions, state, accelerations);
+  std::vector<SupportForce> forces = applySupportForces(supports, frictions, state, accelerations);
 
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
     const double left =
         std::max(linearVelocity(accelerations, body).norm(), sizes_[i] * angularVelocity(accelerations, body).norm());
-    if (islands[i] == island && left > tolerances_.residualAcceleration) return false;
+    if (islands[i] == island && left > tolerances_.residualAcceleration) return std::nullopt;
   }
-  return true;
+  return forces;
 }
 
-/// Adds to the accelerations what forces at the supports give that leave as little closing and sliding as can be.
-void RestingBodies::applySupportForces(const std::vector<Contact>& supports, const std::vector<double>& frictions,
-                                       const VectorX& state, VectorX& accelerations) {
+/// Adds to the accelerations what forces at the supports give that leave as little closing and sliding as can be;
+/// returns the forces.
+std::vector<SupportForce> RestingBodies::applySupportForces(const std::vector<Contact>& supports,
+                                                            const std::vector<double>& frictions, const VectorX& state,
+                                                            VectorX& accelerations) {
+  std::vector<SupportForce> forces;
+  const auto take = [&](const auto& forceAt) {
+    for (std::size_t i = 0; i < supports.size(); ++i)
+      forces.push_back({supports[i], geometry_.pairs[supports[i].pair], forceAt(i)});
+  };
   ConstraintSolver solver(mechanism_.constraints, mechanism_.bodies);
   if (solver.hasConstraints()) solver.factorize(state);
   if (supports.size() <= kFewSupports) {
     const ContactDelassus cones(supports, ImpulseResponse(mechanism_.bodies, solver), state);
     const VectorX free = cones.velocitiesIn(accelerations);
-    cones.apply(solveFrictionalContact(cones.matrix(), free, frictions).impulses, accelerations);
-    return;
+    const VectorX impulses = solveFrictionalContact(cones.matrix(), free, frictions).impulses;
+    cones.apply(impulses, accelerations);
+    take([&](std::size_t i) { return cones.worldImpulse(i, impulses); });
+    return forces;
   }
   SparseDelassus cones;
   cones.set(supports, mechanism_.bodies, solver, state);
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(supports.size());
   WarmStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
   const VectorX free = cones.velocitiesIn(accelerations);
-  cones.apply(solveFrictionalContact(cones.scaledOperator(), free, frictions, tolerances_.forceError, start).impulses,
-              accelerations);
+  const VectorX impulses =
+      solveFrictionalContact(cones.scaledOperator(), free, frictions, tolerances_.forceError, start).impulses;
+  cones.apply(impulses, accelerations);
+  take([&](std::size_t i) { return Vec3(cones.axes(i) * impulses.segment<3>(3 * static_cast<Eigen::Index>(i))); });
+  return forces;
 }
 
 std::vector<int> RestingBodies::letSleep(double time, const std::vector<Contact>& contacts, VectorX& state) {
@@ -120,19 +141,23 @@ std::vector<int> RestingBodies::letSleep(double time, const std::vector<Contact>
     if (!isStill(time, body, state)) candidate[static_cast<std::size_t>(islands[body])] = 0;
 
   for (std::size_t island = 0; island < islands.size(); ++island) {
-    if (!candidate[island] || !canBeInEquilibrium(time, islands, static_cast<int>(island), state)) continue;
+    if (!candidate[island]) continue;
+    const auto supports = findEquilibrium(time, islands, static_cast<int>(island), state);
+    if (!supports) continue;
     std::vector<int> members;
     for (std::size_t body = 0; body < islands.size(); ++body) {
       if (islands[body] != static_cast<int>(island)) continue;
       if (!equations_.isResting(body)) asleep.push_back(static_cast<int>(body));
       members.push_back(static_cast<int>(body));
     }
-    bringToRest(members, state);
+    bringToRest(members, state, *supports);
   }
   return asleep;
 }
 
-void RestingBodies::bringToRest(const std::vector<int>& bodies, VectorX& state) {
+void RestingBodies::bringToRest(const std::vector<int>& bodies, VectorX& state,
+                                const std::vector<SupportForce>& supports) {
+  setSupports(bodies, supports);
   for (const int body : bodies) {
     numericalEnergy(state) += kineticEnergy(mechanism_.bodies[static_cast<std::size_t>(body)], body, state);
     state.segment<kVelocitySize>(velocityOffset(state, body)).setZero();
@@ -162,7 +187,19 @@ std::vector<int> RestingBodies::wake(double time, int body) {
     wakeTimes_[other] = time;
     woken.push_back(static_cast<int>(other));
   }
+  setSupports(woken, {});
   return woken;
+}
+
+/// Replaces the forces that keep bodies still. Most contacts that touch and carry nothing have some from rounding.
+void RestingBodies::setSupports(const std::vector<int>& bodies, const std::vector<SupportForce>& supports) {
+  auto all = std::make_shared<std::vector<SupportForce>>(*supports_);
+  std::erase_if(*all, [&](const SupportForce& support) { return holdsAny(support, bodies); });
+  double most = 0;  // N
+  for (const SupportForce& support : supports) most = std::max(most, support.force.norm());
+  for (const SupportForce& support : supports)
+    if (support.force.norm() > kMinLoadRatio * most) all->push_back(support);
+  supports_ = std::move(all);
 }
 
 }  // namespace cradle

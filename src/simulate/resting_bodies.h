@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "collision/separation.h"
@@ -7,6 +9,13 @@
 #include "simulate/steps/step_tolerances.h"
 
 namespace cradle {
+
+/// What a contact carries of bodies that rest.
+struct SupportForce {
+  Contact contact;
+  ColliderPair pair;
+  Vec3 force;  // N, world, on B
+};
 
 /// Bodies that lie still: nothing is computed for them until something touches them. Bodies come to rest together with
 /// all that they touch or are joined to (their island), and wake together.
@@ -22,8 +31,12 @@ class RestingBodies {
   /// the contacts of this instant. Returns the bodies that came to rest.
   std::vector<int> letSleep(double time, const std::vector<Contact>& contacts, VectorX& state);
 
-  /// Stops bodies that rest together from now on; what they still had of kinetic energy is numerical.
-  void bringToRest(const std::vector<int>& bodies, VectorX& state);
+  /// Stops bodies that rest together from now on, as these contact forces keep them; what they still had of kinetic
+  /// energy is numerical.
+  void bringToRest(const std::vector<int>& bodies, VectorX& state, const std::vector<SupportForce>& supports = {});
+
+  /// Of all bodies that rest; what is returned stays as it is when they wake.
+  std::shared_ptr<const std::vector<SupportForce>> supports() const { return supports_; }
 
   /// Wakes the island of a body. Returns the bodies that were woken.
   std::vector<int> wake(double time, int body);
@@ -36,9 +49,13 @@ class RestingBodies {
   std::vector<int> islandsOf(const std::vector<Contact>& contacts) const;
   bool isStill(double time, std::size_t body, const VectorX& state) const;
   bool isSlow(std::size_t body, const VectorX& state) const;
-  void applySupportForces(const std::vector<Contact>& supports, const std::vector<double>& frictions,
-                          const VectorX& state, VectorX& accelerations);
-  bool canBeInEquilibrium(double time, const std::vector<int>& islands, int island, const VectorX& state);
+  std::vector<SupportForce> applySupportForces(const std::vector<Contact>& supports,
+                                               const std::vector<double>& frictions, const VectorX& state,
+                                               VectorX& accelerations);
+  std::optional<std::vector<SupportForce>> findEquilibrium(double time, const std::vector<int>& islands, int island,
+                                                           const VectorX& state);
+
+  void setSupports(const std::vector<int>& bodies, const std::vector<SupportForce>& supports);
 
   const Mechanism& mechanism_;
   const ContactGeometry& geometry_;
@@ -48,6 +65,7 @@ class RestingBodies {
   double stillTime_ = 0;           // s
   std::vector<double> wakeTimes_;  // s, of each body's last waking
   std::vector<int> restingIsland_;
+  std::shared_ptr<const std::vector<SupportForce>> supports_ = std::make_shared<std::vector<SupportForce>>();
 };
 
 }  // namespace cradle

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/cpu_stopwatch.h"
+#include "simulate/lasting_contacts.h"
 #include "simulate/life_sign.h"
 #include "simulate/plan/plan_text.h"
 #include "simulate/step_loss.h"
@@ -30,6 +31,10 @@ void tellOfPromises(World& run, const SimulationSink& sink) {
   for (const PromiseEnd& end : run.takePromiseEnds())
     if (sink.promiseEnd) sink.promiseEnd(end);
   for (const std::string& warning : run.takeWarnings()) sink.warning(warning);
+}
+
+void tellOfContacts(LastingContacts& contacts, const SimulationSink& sink) {
+  for (const LastingContact& contact : contacts.takeChanged()) sink.contact(contact);
 }
 
 }  // namespace
@@ -67,6 +72,7 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink) {
 RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
   CpuStopwatch integration;
   StepLoss loss(scene);
+  LastingContacts contacts;
   LifeSign sign(sink.reached);
   std::function<void(double)> note;
   if (sink.reached) note = [&sign](double time) { sign.note(time); };
@@ -75,18 +81,30 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
   for (long number = 0; number <= lastFrame(scene); ++number) {
     sign.beginFrame();
     integration.start();
-    const Frame frame = run.frameAt(number, frameTime(scene, number), note);
+    Frame frame = run.frameAt(number, frameTime(scene, number), note);
     integration.stop();
-    for (const Event& event : run.takeEvents(frame.time)) sink.event(event);
+    for (const Event& event : run.takeEvents(frame.time)) {
+      if (sink.contact) contacts.note(event);
+      if (!isOfLastingContact(event.kind)) sink.event(event);
+    }
     tellOfPromises(run, sink);
     for (const Correction& correction : run.takeCorrections()) {
       if (sink.correction) sink.correction(correction);
       sink.warning(describe(correction, scene));
     }
     loss.add(frame);
+    if (sink.contact) {
+      frame.contacts = run.contactWrenches();
+      contacts.note(frame);
+      tellOfContacts(contacts, sink);
+    }
     sink.frame(frame);
   }
   run.finish();
+  if (sink.contact) {
+    contacts.finish();
+    tellOfContacts(contacts, sink);
+  }
   tellOfPromises(run, sink);
   if (const auto warning = loss.warning(); warning && !run.hasLongSteps()) sink.warning(*warning);
   return {integration.seconds(), run.evaluations(), run.correctionCounts(),
@@ -99,7 +117,15 @@ Trajectory simulate(const Scene& scene) {
   Trajectory trajectory;
   trajectory.header = headerOf(scene, run.plan());
   const SimulationSink sink{[&](const Frame& frame) { trajectory.frames.push_back(frame); },
-                            [&](const Event& event) { trajectory.events.push_back(event); }, [](const std::string&) {}};
+                            [&](const Event& event) { trajectory.events.push_back(event); },
+                            [](const std::string&) {},
+                            {},
+                            {},
+                            [&](const LastingContact& contact) {
+                              const auto id = static_cast<std::size_t>(contact.id);
+                              if (id == trajectory.contacts.size()) trajectory.contacts.emplace_back();
+                              trajectory.contacts[id] = contact;
+                            }};
   trajectory.cost = simulate(scene, run, sink);
   return trajectory;
 }

@@ -19,6 +19,9 @@ struct SimulationSink {
   std::function<void(const std::string&)> warning;         // what the user should know, as soon as it is known
   std::function<void(const Correction&)> correction = {};  // the first of each kind, before its warning; may be none
   std::function<void(const PromiseEnd&)> promiseEnd = {};  // of each island, before the warning; may be none
+  /// Each contact that lasts, when it begins, before its first frame, and again when it has ended; may be none: then
+  /// frames have no contacts, either.
+  std::function<void(const LastingContact&)> contact = {};
   std::function<void(double time)> reached = {};  // s, inside a frame that takes seconds, once a second; may be none
 };
 

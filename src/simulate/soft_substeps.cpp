@@ -5,18 +5,25 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "constraints/invariants.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "math/elementary.h"
+#include "simulate/contact_wrenches.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kGainRounding = 1e-9;        // of the energy that there is
+constexpr double kGainRounding = 1e-9;  // of the energy that there is
+// For what contacts of bodies asleep carry. All together balance the weights to some hundredths; while more than a few
+// bodies move it is found in fewer sub-steps, and kept where it changes by less than kSameLoad.
+constexpr int kSubStepsAtRest = 64, kSubStepsWhileSettling = 8;
+constexpr double kFewAwake = 0.05;  // of all bodies
+constexpr double kSameLoad = 0.05;
 constexpr std::size_t kBodiesAThread = 2000;  // with fewer, threads wait for each other longer than they work
 
 // Of the mass of all others: of driven bodies, which contacts change by as little. What contacts did to them is read
@@ -81,6 +88,7 @@ void SoftSubsteps::takeStep(double timeStep) {
   book(constant);
   requireNoGain();
   record();
+  hasSleepChanged_ = hasSleepChanged_ || !step_.fallenAsleep().empty() || !step_.woken().empty();
 }
 
 /// Gives driven bodies the velocities that lead them through a step.
@@ -160,6 +168,72 @@ void SoftSubsteps::record() {
   for (const int body : step_.woken()) recordBody(EventKind::wake, body);
   for (const int body : step_.fallenAsleep())
     if (!assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven()) recordBody(EventKind::rest, body);
+}
+
+bool SoftSubsteps::isAwake(int sceneBody) const {
+  const auto found = std::ranges::lower_bound(assembly_.sceneBodies, sceneBody);
+  return found != assembly_.sceneBodies.end() && *found == sceneBody &&
+         !step_.isAsleep(static_cast<std::size_t>(found - assembly_.sceneBodies.begin()));
+}
+
+std::vector<ContactWrench> SoftSubsteps::contactWrenches() {
+  if (std::exchange(hasSleepChanged_, false)) findLoadsAtRest();
+  const std::vector<SoftContactSolver::MeanLoad> loads = step_.meanLoads();
+  std::vector<std::pair<int, int>> met;  // scene bodies
+  for (const SoftStep::Impact& impact : step_.impacts()) met.push_back(bodiesOf(assembly_, impact.pair));
+  std::ranges::sort(met);
+  WrenchSum sum;
+  step_.contacts().forEachContact([&](const ColliderPair& pair, std::int32_t index, bool isExchanged) {
+    if (!isStill(pair) && !std::ranges::binary_search(met, bodiesOf(assembly_, pair)))
+      addLoad({pair, index, isExchanged}, loads, sum);
+  });
+  std::vector<ContactWrench> wrenches = sum.wrenches();
+  for (const auto& [bodies, wrench] : atRest_) wrenches.push_back(wrench);
+  return wrenches;
+}
+
+void SoftSubsteps::findLoadsAtRest() {
+  const bool isSettled = static_cast<double>(step_.awake()) <= kFewAwake * static_cast<double>(bodies_.size());
+  const auto loads = step_.loadsAtRest(isSettled ? kSubStepsAtRest : kSubStepsWhileSettling);
+  WrenchSum sum;
+  step_.contacts().forEachContact([&](const ColliderPair& pair, std::int32_t index, bool isExchanged) {
+    if (isStill(pair)) addLoad({pair, index, isExchanged}, loads, sum);
+  });
+  std::map<std::pair<int, int>, ContactWrench> atRest;
+  for (const ContactWrench& wrench : sum.wrenches()) {
+    const std::pair bodies{wrench.bodyA, wrench.bodyB};
+    const auto before = atRest_.find(bodies);
+    const bool isSame = before != atRest_.end() && !isSettled &&
+                        (wrench.force - before->second.force).norm() < kSameLoad * wrench.force.norm();
+    atRest.emplace_hint(atRest.end(), bodies, isSame ? before->second : wrench);
+  }
+  atRest_ = std::move(atRest);
+}
+
+bool SoftSubsteps::isStill(const ColliderPair& pair) const {
+  const auto bodies = bodiesOf(assembly_, pair);
+  return !isAwake(bodies.first) && !isAwake(bodies.second);
+}
+
+void SoftSubsteps::addLoad(const SoftContacts::Meeting& contact, const std::vector<SoftContactSolver::MeanLoad>& loads,
+                           WrenchSum& sum) const {
+  const auto index = static_cast<std::size_t>(contact.manifold);
+  const SoftContactSolver::MeanLoad& load = loads[index];
+  const PersistentManifold& manifold = step_.contacts().manifolds()[index];
+  if (!(std::accumulate(load.forces.begin(), load.forces.begin() + load.points, 0.0) > 0)) return;
+  const auto [a, b] = bodiesOf(assembly_, contact.pair);
+  const Vec3 center = centerOfMass(state_, manifold.bodyA);
+  const Mat3 worldFromA = orientation(state_, manifold.bodyA).toRotationMatrix();
+  const double sign = contact.isExchanged ? -1 : 1;
+  const Vec3 normal = sign * manifold.normal;
+  Vec3 middle = Vec3::Zero();
+  for (int i = 0; i < load.points; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Vec3 point = center + worldFromA * manifold.onA[at].cast<double>();
+    middle += point / load.points;
+    sum.add({a, b, point, load.forces[at] * normal, Vec3::Zero()});
+  }
+  sum.add({a, b, middle, Vec3::Zero(), sign * load.frictionForce, load.twist * normal});
 }
 
 std::vector<Event> SoftSubsteps::takeEvents() {

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "impact/soft_step.h"
 #include "simulate/assembly.h"
+#include "simulate/contact_wrenches.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {
@@ -23,6 +26,10 @@ class SoftSubsteps {
   /// there is more energy than at the start and by the work of driven bodies, or these leave others no room.
   const VectorX& stateAt(double time);
 
+  /// What contacts did in the mean of the last sub-steps between two looks for contacts, but those of bodies that met
+  /// in the last step: that is an event. Between bodies asleep what holds them still.
+  std::vector<ContactWrench> contactWrenches();
+
   const Assembly& assembly() const { return assembly_; }
 
   /// Detection passes: calls of collision detection.
@@ -33,6 +40,11 @@ class SoftSubsteps {
 
  private:
   void takeStep(double timeStep);
+  bool isAwake(int sceneBody) const;
+  bool isStill(const ColliderPair& pair) const;
+  void findLoadsAtRest();
+  void addLoad(const SoftContacts::Meeting& contact, const std::vector<SoftContactSolver::MeanLoad>& loads,
+               WrenchSum& sum) const;
   void lead(double timeStep);
   void place();
   void requireRoom() const;
@@ -50,6 +62,8 @@ class SoftSubsteps {
   double startEnergy_ = 0;          // J
   double time_ = 0;                 // s
   std::vector<Event> events_;
+  bool hasSleepChanged_ = false;                         // since loads at rest were found
+  std::map<std::pair<int, int>, ContactWrench> atRest_;  // by scene bodies
 };
 
 }  // namespace cradle

@@ -181,6 +181,20 @@ void World::takeFrom(Simulation& simulation, const VectorX& state, Frame& frame)
   events_.insert(events_.end(), events.begin(), events.end());
 }
 
+std::vector<ContactWrench> World::contactWrenches() {
+  std::vector<ContactWrench> all;
+  const auto add = [&all](const std::vector<ContactWrench>& wrenches) {
+    all.insert(all.end(), wrenches.begin(), wrenches.end());
+  };
+  forEachSolver([&add](auto& solver, std::size_t) { add(solver.contactWrenches()); });
+  for (const auto& spheres : spheres_) add(spheres->contactWrenches());
+  for (const auto& pile : softIslands_) add(pile->contactWrenches());
+  std::stable_sort(all.begin(), all.end(), [](const ContactWrench& a, const ContactWrench& b) {
+    return std::pair(a.bodyA, a.bodyB) < std::pair(b.bodyA, b.bodyB);
+  });
+  return all;
+}
+
 void World::finish() {
   forEachSolver([](auto& solver, std::size_t) { solver.finish(); });
   notePromiseEnds();

@@ -40,6 +40,9 @@ class World {
   /// is told the mean of the islands' clocks (s) after each of their steps; it may be none.
   Frame frameAt(long number, double time, const std::function<void(double time)>& reached = {});
 
+  /// What lasting contacts do in the last frame, ascending by bodies.
+  std::vector<ContactWrench> contactWrenches();
+
   /// To be called after the last frame: ends promises that the frames as a whole did not keep.
   void finish();
 

@@ -57,15 +57,50 @@ struct JointState {
 /// Whether a joint can have that state: its numbers are finite and below 1e100.
 bool isPossible(const JointState& state);
 
+/// What body A does to body B by a contact that lasts.
+struct ContactWrench {
+  long contact = -1;                // id of the LastingContact
+  int bodyA = 0, bodyB = 0;         // indices into TrajectoryHeader::bodies
+  Vec3 force = Vec3::Zero();        // N, world, on B: along the normals and friction
+  Vec3 normalForce = Vec3::Zero();  // N, world, on B: the part along the normals
+  Vec3 torque = Vec3::Zero();       // N m, world, on B about `point`
+  Vec3 point = Vec3::Zero();        // m, world: the centre of pressure
+};
+
+/// Two bodies that press each other for a while.
+struct LastingContact {
+  long id = 0;                     // from 0, in the order of their begins
+  int bodyA = 0, bodyB = 0;        // indices into TrajectoryHeader::bodies
+  double begin = 0;                // s
+  std::optional<double> end = {};  // s; none: not known yet
+};
+
 struct Frame {
   long number = 0;
   double time = 0;                // s
   std::vector<BodyState> states;  // one a dynamic or driven body, in the order of the bodies
   EnergyBalance energy;
-  std::vector<JointState> joints = {};  // in the order of TrajectoryHeader::joints
+  std::vector<JointState> joints = {};       // in the order of TrajectoryHeader::joints
+  std::vector<ContactWrench> contacts = {};  // if they were asked for; ascending by bodies
 };
 
-enum class EventKind { impact, taut, slack, rest, slip, stick, roll, release, wake, pushStart, pushEnd, pushMissed };
+/// contactBegin and contactEnd are those of a LastingContact: no trajectory has them as events of their own.
+enum class EventKind {
+  impact,
+  taut,
+  slack,
+  rest,
+  slip,
+  stick,
+  roll,
+  release,
+  wake,
+  pushStart,
+  pushEnd,
+  pushMissed,
+  contactBegin,
+  contactEnd
+};
 
 struct Event {
   double time = 0;  // s
@@ -121,8 +156,14 @@ struct Trajectory {
   TrajectoryHeader header;
   std::vector<Frame> frames;
   std::vector<Event> events;
+  std::vector<LastingContact> contacts;  // by id
   RunCost cost;
 };
+
+/// Whether it is the begin or the end of a LastingContact.
+inline bool isOfLastingContact(EventKind kind) {
+  return kind == EventKind::contactBegin || kind == EventKind::contactEnd;
+}
 
 /// Name of an event kind as the files have it, and back (throws Error(scene) for an unknown one).
 std::string eventKindName(EventKind kind);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -37,6 +38,8 @@ class TrajectoryWriter {
   void append(const Frame& frame);
   /// Events in order of time.
   void append(const Event& event);
+  /// A contact, before its first frame, and again when it has ended.
+  void append(const LastingContact& contact);
 
   bool hasFrame() const { return framesAppended_ > 0; }
 
@@ -54,12 +57,15 @@ class TrajectoryWriter {
   std::unique_ptr<Database> release();
   void requireFinite(const Frame& frame) const;
   void writeFrame(const Frame& frame);
+  void writeContacts(const Frame& frame);
   void commitIfDue();
   void endUnfinished() noexcept;
 
   std::string path_, part_;
   std::vector<std::string> bodyNames_, jointNames_;
   std::vector<int> movingBodies_;  // ids
+  using ForceNumbers = std::array<double, 14>;
+  std::map<long, ForceNumbers> lastForces_;  // of each contact that has not ended: its last row
   std::chrono::milliseconds commitInterval_;
   std::chrono::steady_clock::time_point lastCommit_;
   long framesAppended_ = 0, framesCommitted_ = 0;
@@ -88,6 +94,12 @@ class TrajectoryReader {
   /// Frame `number` of 0..frameCount()-1, in any order. Throws as the constructor does. O(bodies).
   Frame readFrame(long number) const;
   std::vector<Event> events() const;
+
+  /// By number. Empty in trajectories of earlier versions.
+  std::vector<LastingContact> contacts() const;
+
+  /// What lasting contacts do at a frame, by their numbers. Amortised O(contacts) if frames are read in their order.
+  std::vector<ContactWrench> contactsAt(long number) const;
 
   /// Everything of the table `meta`, as text.
   const std::map<std::string, std::string>& meta() const { return meta_; }

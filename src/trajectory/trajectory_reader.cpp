@@ -34,7 +34,8 @@ constexpr const char* kMaterialsOfMesh =
     "value ->> 'texture' "
     "FROM mesh, json_each(mesh.material) WHERE mesh.id = ?";
 constexpr const char* kTableNames = "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')";
-constexpr const char* kJointTableNames = "('joint', 'joint_state')";  // which earlier versions did not write
+constexpr const char* kJointTableNames = "('joint', 'joint_state')";        // which earlier versions did not write
+constexpr const char* kContactTableNames = "('contact', 'contact_force')";  // the same
 constexpr const char* kTextureTableNames = "('texture', 'texture_coordinates')";  // only where there are textures
 
 /// The first bytes of a file, or all; empty if it cannot be read.
@@ -75,6 +76,7 @@ void requireTrajectory(Database& database, const std::string& path) {
   if (!isOurs) throw Error(ErrorKind::usage, path, "is a SQLite database, but not a trajectory of cradle");
   requireStored(database, kTableNames);
   requireStored(database, kJointTableNames);
+  requireStored(database, kContactTableNames);
   requireStored(database, kTextureTableNames);
   const std::int64_t version = oneInteger(database, "PRAGMA user_version");
   if (version != kSchemaVersion)
@@ -218,7 +220,15 @@ struct TrajectoryReader::Session {
           "SELECT joint, coordinate, velocity, force FROM joint_state WHERE frame = ? ORDER BY joint"));
   }
 
+  /// Contacts and their last rows up to a frame.
+  struct Forces {
+    std::optional<std::vector<LastingContact>> contacts;  // once they are asked for
+    std::map<long, ContactWrench> latest;
+    long nextFrame = 0;
+  };
+
   std::unique_ptr<Database> database;
+  Forces forces;
   std::optional<Statement> state, energy;
   std::optional<Statement> joint;  // none in files of earlier versions
 };
@@ -423,6 +433,67 @@ void TrajectoryReader::readJointStates(Frame& frame) const {
   }
   if (query.step()) fail();
   query.reset();
+}
+
+std::vector<LastingContact> TrajectoryReader::contacts() const {
+  Database& database = *session_->database;
+  std::vector<LastingContact> contacts;
+  if (countTables(database, kContactTableNames) < 2) return contacts;
+  Statement query = database.prepare("SELECT id, a, b, begin, end FROM contact ORDER BY id");
+  while (query.step()) {
+    if (query.integer(0) != std::ssize(contacts)) database.failDamaged("a contact is missing");
+    contacts.push_back({static_cast<long>(query.integer(0)), bodyAt(query, 1, header_, database, "a contact"),
+                        bodyAt(query, 2, header_, database, "a contact"), query.real(3)});
+    LastingContact& contact = contacts.back();
+    if (!query.isNull(4)) contact.end = query.real(4);
+    if (!(contact.begin >= 0 && contact.end.value_or(contact.begin) >= contact.begin &&
+          contact.end.value_or(contact.begin) <= kLatestTime))
+      database.failDamaged(fmt::format("contact {} lasts when none can", contact.id));
+  }
+  return contacts;
+}
+
+std::vector<ContactWrench> TrajectoryReader::contactsAt(long number) const {
+  CRADLE_CHECK(number >= 0 && number < frameCount());
+  Session::Forces& forces = session_->forces;
+  if (!forces.contacts) forces.contacts = contacts();
+  if (number < forces.nextFrame) forces = {std::move(forces.contacts), {}, 0};
+  Database& database = *session_->database;
+  if (!forces.contacts->empty()) {
+    Statement query = database.prepare(
+        "SELECT contact, fx, fy, fz, tx, ty, tz, x, y, z, nx, ny, nz, normal FROM contact_force WHERE frame BETWEEN ? "
+        "AND ?");
+    query.bind(1, forces.nextFrame);
+    query.bind(2, number);
+    while (query.step()) {
+      const std::int64_t id = query.integer(0);
+      if (id < 0 || id >= std::ssize(*forces.contacts))
+        database.failDamaged("a force of a contact is of one that is not there");
+      const LastingContact& contact = (*forces.contacts)[static_cast<std::size_t>(id)];
+      const ContactWrench wrench{contact.id,
+                                 contact.bodyA,
+                                 contact.bodyB,
+                                 vectorAt(query, 1),
+                                 query.real(13) * vectorAt(query, 10),
+                                 vectorAt(query, 4),
+                                 vectorAt(query, 7)};
+      for (const Vec3& vector : {wrench.force, wrench.normalForce, wrench.torque, wrench.point})
+        if (!(vector.norm() < kLargestNumber))
+          database.failDamaged(fmt::format("a force of contact {} is none that can be", id));
+      forces.latest[contact.id] = wrench;
+    }
+  }
+  forces.nextFrame = number + 1;
+  const double time = frameTimes_[static_cast<std::size_t>(number)];
+  std::vector<ContactWrench> now;
+  for (auto next = forces.latest.begin(); next != forces.latest.end();) {
+    const auto here = next++;
+    if ((*forces.contacts)[static_cast<std::size_t>(here->first)].end.value_or(time) < time)
+      forces.latest.erase(here);
+    else
+      now.push_back(here->second);
+  }
+  return now;
 }
 
 std::vector<Event> TrajectoryReader::events() const {

@@ -44,6 +44,16 @@ CREATE TABLE event (time, kind TEXT,
   x, y, z,               -- m, world
   nx, ny, nz,            -- unit, from a to b
   impulse);              -- N s
+CREATE TABLE contact (id INTEGER PRIMARY KEY,  -- bodies that press each other for a while
+  a INTEGER, b INTEGER,  -- bodies
+  begin, end);           -- s; end null until it is known
+CREATE TABLE contact_force (frame INTEGER, contact INTEGER,  -- a row where it differs from the contact's last one
+  fx, fy, fz,        -- N, world, of a on b
+  tx, ty, tz,        -- N m, world, of a on b about the point
+  x, y, z,           -- m, world: the centre of pressure
+  nx, ny, nz,        -- unit, from a to b: of the normal part
+  normal, friction,  -- N, of the force: along that, and the rest
+  PRIMARY KEY (frame, contact)) WITHOUT ROWID;
 CREATE TABLE energy (frame INTEGER PRIMARY KEY, kinetic, potential, dissipated, work,  -- J
   px, py, pz,   -- kg m/s
   lx, ly, lz,   -- kg m^2/s, about the world origin

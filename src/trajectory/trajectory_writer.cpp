@@ -188,6 +188,13 @@ std::array<double, 14> energyNumbers(const EnergyBalance& energy) {
       l.z(),          energy.impact,    energy.friction,   energy.damping, energy.numerical};
 }
 
+std::array<double, 14> forceNumbers(const ContactWrench& wrench) {
+  const Vec3 &f = wrench.force, &t = wrench.torque, &at = wrench.point;
+  const Vec3 n = wrench.normalForce.stableNormalized();
+  const double normal = wrench.normalForce.norm(), friction = (f - wrench.normalForce).norm();
+  return {f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), at.x(), at.y(), at.z(), n.x(), n.y(), n.z(), normal, friction};
+}
+
 template <std::size_t N>
 bool allPossible(const std::array<double, N>& numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::abs(number) < kLargestNumber; });
@@ -214,10 +221,12 @@ struct TrajectoryWriter::Session {
         state(database->prepare("INSERT INTO state VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         energy(database->prepare("INSERT INTO energy VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         joint(database->prepare("INSERT INTO joint_state VALUES (?, ?, ?, ?, ?)")),
+        contact(database->prepare("INSERT OR REPLACE INTO contact VALUES (?, ?, ?, ?, ?)")),
+        force(database->prepare("INSERT INTO contact_force VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         event(database->prepare("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}
 
   std::unique_ptr<Database> database;
-  Statement frame, state, energy, joint, event;
+  Statement frame, state, energy, joint, contact, force, event;
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::string& path, const TrajectoryHeader& header,
@@ -274,6 +283,10 @@ void TrajectoryWriter::requireFinite(const Frame& frame) const {
       failNotFinite(frame.time, "state of body " + bodyNames_[static_cast<std::size_t>(movingBodies_[i])]);
   for (std::size_t i = 0; i < frame.joints.size(); ++i)
     if (!isPossible(frame.joints[i])) failNotFinite(frame.time, "state of joint " + jointNames_[i]);
+  for (const ContactWrench& wrench : frame.contacts)
+    if (!allPossible(forceNumbers(wrench)))
+      failNotFinite(frame.time,
+                    fmt::format("contact force on body {}", bodyNames_[static_cast<std::size_t>(wrench.bodyB)]));
   if (!allPossible(energyNumbers(frame.energy))) failNotFinite(frame.time, "energy or momentum of the scene");
 }
 
@@ -291,6 +304,7 @@ void TrajectoryWriter::writeFrame(const Frame& frame) {
   session.energy.bind(1, frame.number);
   bindNumbers(session.energy, 2, energyNumbers(frame.energy));
   session.energy.run();
+  writeContacts(frame);
   for (std::size_t i = 0; i < frame.joints.size(); ++i) {
     const JointState& joint = frame.joints[i];
     session.joint.bind(1, frame.number);
@@ -298,6 +312,32 @@ void TrajectoryWriter::writeFrame(const Frame& frame) {
     bindNumbers(session.joint, 3, std::array{joint.coordinate, joint.velocity, joint.force});
     session.joint.run();
   }
+}
+
+/// A contact has a row where that differs from its last one.
+void TrajectoryWriter::writeContacts(const Frame& frame) {
+  for (const ContactWrench& wrench : frame.contacts) {
+    const ForceNumbers numbers = forceNumbers(wrench);
+    const auto [last, isNew] = lastForces_.try_emplace(wrench.contact, numbers);
+    if (!isNew && last->second == numbers) continue;
+    last->second = numbers;
+    session_->force.bind(1, frame.number);
+    session_->force.bind(2, wrench.contact);
+    bindNumbers(session_->force, 3, numbers);
+    session_->force.run();
+  }
+}
+
+void TrajectoryWriter::append(const LastingContact& contact) {
+  CRADLE_CHECK(session_ && transactionWhole_);
+  Statement& insert = session_->contact;
+  insert.bind(1, contact.id);
+  insert.bind(2, contact.bodyA);
+  insert.bind(3, contact.bodyB);
+  insert.bind(4, contact.begin);
+  contact.end ? insert.bind(5, *contact.end) : insert.bindNull(5);
+  insert.run();
+  if (contact.end) lastForces_.erase(contact.id);
 }
 
 void TrajectoryWriter::append(const Event& event) {

@@ -38,9 +38,9 @@ class TrajectorySchema : public testing::Test {
 };
 
 TEST_F(TrajectorySchema, HasTheTablesOfTheContract) {
-  EXPECT_EQ(
-      rows("SELECT name FROM sqlite_master WHERE type != 'index' ORDER BY name"),
-      (std::vector<std::string>{"body", "energy", "event", "frame", "joint", "joint_state", "mesh", "meta", "state"}));
+  EXPECT_EQ(rows("SELECT name FROM sqlite_master WHERE type != 'index' ORDER BY name"),
+            (std::vector<std::string>{"body", "contact", "contact_force", "energy", "event", "frame", "joint",
+                                      "joint_state", "mesh", "meta", "state"}));
 }
 
 TEST_F(TrajectorySchema, HasTheColumnsOfTheContractInItsOrder) {
@@ -51,6 +51,8 @@ TEST_F(TrajectorySchema, HasTheColumnsOfTheContractInItsOrder) {
   EXPECT_EQ(columnsOf(path_, "state"), "frame body px py pz qw qx qy qz vx vy vz wx wy wz");
   EXPECT_EQ(columnsOf(path_, "joint"), "id name kind a b");
   EXPECT_EQ(columnsOf(path_, "joint_state"), "frame joint coordinate velocity force");
+  EXPECT_EQ(columnsOf(path_, "contact"), "id a b begin end");
+  EXPECT_EQ(columnsOf(path_, "contact_force"), "frame contact fx fy fz tx ty tz x y z nx ny nz normal friction");
   EXPECT_EQ(columnsOf(path_, "event"), "time kind a b x y z nx ny nz impulse");
   EXPECT_EQ(columnsOf(path_, "energy"),
             "frame kinetic potential dissipated work px py pz lx ly lz impact friction damping numerical");
@@ -84,6 +86,19 @@ TEST_F(TrajectorySchema, WithoutCausesIsReadAllTheSame) {
   expectSameBits(energy.dissipated, sampleFrame(1).energy.dissipated);
   for (const double cause : {energy.impact, energy.friction, energy.damping, energy.numerical})
     EXPECT_TRUE(std::isnan(cause));
+}
+
+// What files of the time before contacts were told of have.
+TEST_F(TrajectorySchema, WithoutContactsIsReadAllTheSame) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open_v2(path_.c_str(), &database, SQLITE_OPEN_READWRITE, nullptr), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, "DROP TABLE contact; DROP TABLE contact_force", nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(database);
+  const TrajectoryReader reader(path_);
+  EXPECT_TRUE(reader.contacts().empty());
+  EXPECT_TRUE(reader.contactsAt(1).empty());
+  EXPECT_EQ(reader.hashOfFrames(), reader.stateHash());
 }
 
 // What files of the time before joints were told of have.
@@ -146,6 +161,46 @@ TEST_F(TrajectorySchema, FindsFramesWithoutReadingAllStates) {
 
 TEST_F(TrajectorySchema, PassesTheDatabasesOwnCheck) {
   EXPECT_EQ(rows("PRAGMA integrity_check"), std::vector<std::string>{"ok"});
+}
+
+/// A wrench of contact `id` whose numbers tell from which frame it is.
+ContactWrench sampleWrench(long id, double number) {
+  return {id, 0, 1, Vec3(number, 2, 2), Vec3(0, 2, 0), Vec3(0, 0, number), Vec3(-0.0, 1, 3)};
+}
+
+// Contact 0 changes at frames 0 and 2, and goes on; contact 1 is that of frames 1 and 2.
+TEST(TrajectorySchemaOfContacts, HasRowsWhereForcesChange) {
+  const TemporaryFolder folder;
+  TrajectoryWriter writer(folder.file("a.sqlite"), sampleHeader());
+  std::vector<std::vector<ContactWrench>> wrenches;
+  for (int number = 0; number < 4; ++number) {
+    Frame frame = sampleFrame(number);
+    if (number == 0) writer.append(LastingContact{0, 0, 1, 0});
+    if (number == 1) writer.append(LastingContact{1, 0, 2, 0.5 * frame.time});
+    if (number == 3) writer.append(LastingContact{1, 0, 2, 0.25, sampleFrame(2).time});
+    frame.contacts.push_back(sampleWrench(0, number < 2 ? 1 : 7));
+    if (number == 1 || number == 2) frame.contacts.push_back(sampleWrench(1, number));
+    writer.append(frame);
+    wrenches.push_back(frame.contacts);
+  }
+  writer.finish({});
+  EXPECT_EQ(rowsOf(folder.file("a.sqlite"), "SELECT frame, contact FROM contact_force ORDER BY contact, frame"),
+            (std::vector<std::string>{"0|0", "2|0", "1|1", "2|1"}));
+  const TrajectoryReader reader(folder.file("a.sqlite"));
+  ASSERT_EQ(reader.contacts().size(), 2u);
+  EXPECT_FALSE(reader.contacts()[0].end);
+  EXPECT_EQ(*reader.contacts()[1].end, sampleFrame(2).time);
+  for (const std::size_t number : {0, 1, 2, 3, 1, 0, 3}) {  // in any order
+    const std::vector<ContactWrench> found = reader.contactsAt(static_cast<long>(number));
+    ASSERT_EQ(found.size(), wrenches[number].size()) << number;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].contact, wrenches[number][i].contact);
+      EXPECT_EQ(found[i].force, wrenches[number][i].force);
+      EXPECT_EQ(found[i].normalForce, wrenches[number][i].normalForce);
+      EXPECT_EQ(found[i].torque, wrenches[number][i].torque);
+      EXPECT_EQ(found[i].point, wrenches[number][i].point);
+    }
+  }
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ void ActiveContacts::release(const std::optional<ContactChange>& change) {
   }
   isReleasing_ = change && change->kind == ContactChange::Kind::release;
   mechanism().contacts.clear();
-  records_.clear();
+  records_.clear(), bodies_.clear();
   fallback_.reason = {};
 }
 
@@ -86,6 +86,8 @@ void ActiveContacts::add(const ContactRecord& record, const std::vector<BodyFram
   }
   mechanism().contacts.push_back(constraint);
   records_.push_back(record);
+  const auto [a, b] = bodiesOf(island_.assembly, record.pair);
+  bodies_.push_back({a, b, constraint.centerA.body != record.contact.bodyA});
 }
 
 /// Finds the row of an idle contact as a sum of those of active contacts of its pair, if it depends on them.
@@ -121,10 +123,10 @@ void ActiveContacts::releaseResting() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < records_.size(); ++i) {
     if (!isAwake(records_[i].contact, island_.resting)) continue;
-    records_[kept] = records_[i];
+    records_[kept] = records_[i], bodies_[kept] = bodies_[i];
     mechanism().contacts[kept++] = mechanism().contacts[i];
   }
-  records_.resize(kept);
+  records_.resize(kept), bodies_.resize(kept);
   mechanism().contacts.resize(kept);
 }
 

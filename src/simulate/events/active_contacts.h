@@ -12,6 +12,12 @@
 
 namespace cradle {
 
+/// The bodies of an active contact.
+struct BodiesInContact {
+  int bodyA = 0, bodyB = 0;  // of the scene
+  bool isMirrored = false;   // A of the constraint is B
+};
+
 /// Active contacts: those that forces press together, as rows of the equations of motion (Mechanism::contacts). Each
 /// is classified as sticking or sliding (contact_classification.h), and stays so within a step; a change is an event
 /// (contact_changes.h).
@@ -32,6 +38,9 @@ class ActiveContacts {
   void releaseResting();
 
   bool empty() const { return mechanism().contacts.empty(); }
+
+  /// The bodies of Mechanism::contacts.
+  const std::vector<BodiesInContact>& bodies() const { return bodies_; }
 
   /// The features that touch at active contacts, for the near pairs of now.
   const std::vector<ActiveFeature>& features();
@@ -88,7 +97,8 @@ class ActiveContacts {
 
   IslandState& island_;
   const EventTolerances& tolerances_;
-  std::vector<ContactRecord> records_;  // of Mechanism::contacts
+  std::vector<ContactRecord> records_;   // of Mechanism::contacts
+  std::vector<BodiesInContact> bodies_;  // the same
   std::vector<PreviousContact> previous_;
   ContactChanges changes_;
   std::vector<ActiveFeature> features_;

@@ -65,14 +65,15 @@ void ComingToRest::letSleep(const std::vector<Contact>& touching) {
     if (!isAwake[group] || !isStill[group]) continue;
     const std::vector<JointMotor> motors = island_.assembly.mechanism.motors;
     pushTowardsTargets(groups, static_cast<int>(group));
-    if (!canBeInEquilibrium(touching, groups, static_cast<int>(group))) {
+    const auto supports = findEquilibrium(touching, groups, static_cast<int>(group));
+    if (!supports) {
       island_.assembly.mechanism.motors = motors;
       continue;
     }
     std::vector<int> members;
     for (std::size_t body = 0; body < bodies; ++body)
       if (groupOf(body) == group) members.push_back(static_cast<int>(body));
-    if (!members.empty()) island_.resting.bringToRest(members, island_.state);
+    if (!members.empty()) island_.resting.bringToRest(members, island_.state, *supports);
   }
 }
 
@@ -86,17 +87,21 @@ void ComingToRest::pushTowardsTargets(const DisjointSets& groups, int group) {
   }
 }
 
-/// Whether forces of constraints, or these and contact forces within the friction cones, balance all that acts on a
-/// group.
-bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, const DisjointSets& groups, int group) {
+/// The contact forces within the friction cones that balance all that acts on a group, with those of constraints: none
+/// where these do so alone. Null if nothing does.
+std::optional<std::vector<SupportForce>> ComingToRest::findEquilibrium(const std::vector<Contact>& touching,
+                                                                       const DisjointSets& groups, int group) {
   const Mechanism& mechanism = island_.assembly.mechanism;
   VectorX derivative;
   island_.equations.evaluateWithoutContacts(island_.time, island_.state, derivative);
   std::vector<BodyFrame> frames;
   findBodyFrames(mechanism.bodies, island_.state, frames);
   std::vector<ContactRows> contacts;
-  if (isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(0)))
-    return doLimitsHold(contacts, VectorX(), frames, groups, group);
+  std::vector<SupportForce> supports;
+  if (isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(0))) {
+    if (!doLimitsHold(contacts, VectorX(), frames, groups, group)) return std::nullopt;
+    return supports;
+  }
   std::vector<double> frictions;
   const auto leaves = [&](int body) {  // what is driven carries nothing that it does not go with
     return body != kFixed && mechanism.bodies[static_cast<std::size_t>(body)].isDriven() &&
@@ -105,15 +110,24 @@ bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, cons
   for (const Contact& contact : touching) {
     if (groups.islandOf(contact.movingBody()) != group || leaves(contact.bodyB)) continue;
     contacts.push_back(rowsOf(contact, island_.state, frames));
-    frictions.push_back(island_.assembly.geometry.pairs[contact.pair].material.staticFriction);
+    supports.push_back({contact, island_.assembly.geometry.pairs[contact.pair], Vec3::Zero()});
+    frictions.push_back(supports.back().pair.material.staticFriction);
   }
-  if (contacts.empty()) return false;
+  if (contacts.empty()) return std::nullopt;
   const DenseDelassus delassus(blocksOf(contacts), mechanism.bodies, frames, &constraints_);
   const ContactSolution solution =
       solveFrictionalContact(delassus.matrix(), delassus.accelerations(derivative), frictions);
   delassus.apply(solution.impulses, derivative);
-  return isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(solution.residual)) &&
-         doLimitsHold(contacts, solution.impulses, frames, groups, group);
+  if (!isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(solution.residual)) ||
+      !doLimitsHold(contacts, solution.impulses, frames, groups, group))
+    return std::nullopt;
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    const ConstraintBlock& block = contacts[i].block;
+    const Vec3 onFirst =
+        block.linear.topRows<3>().transpose() * solution.impulses.segment<3>(3 * static_cast<Eigen::Index>(i));
+    supports[i].force = block.bodyA == supports[i].contact.bodyA ? Vec3(-onFirst) : onFirst;
+  }
+  return supports;
 }
 
 /// Whether ropes and stops that are constraints in an equilibrium with these forces of contacts pull there, rather than

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "constraints/constraint_forces.h"
@@ -34,7 +35,8 @@ class ComingToRest {
   bool isSlow(std::size_t body) const;
   DisjointSets findRestGroups(const std::vector<Contact>& touching) const;
   void pushTowardsTargets(const DisjointSets& groups, int group);
-  bool canBeInEquilibrium(const std::vector<Contact>& touching, const DisjointSets& groups, int group);
+  std::optional<std::vector<SupportForce>> findEquilibrium(const std::vector<Contact>& touching,
+                                                           const DisjointSets& groups, int group);
   bool doLimitsHold(const std::vector<ContactRows>& contacts, const VectorX& impulses,
                     const std::vector<BodyFrame>& frames, const DisjointSets& groups, int group);
   bool isInEquilibrium(const VectorX& derivative, const DisjointSets& groups, int group, double most) const;

@@ -1,6 +1,7 @@
 #include "simulate/events/event_contacts.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "constraints/invariants.h"
 #include "simulate/events/cylinder_rims.h"
@@ -41,6 +42,26 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
     active_.releaseResting();
   }
   recordRests(rested, zenoTime);
+  recordLastingContacts();
+}
+
+/// Which pairs of bodies press each other from now on, and which do no more.
+void EventContacts::recordLastingContacts() {
+  std::vector<std::pair<int, int>> pressed;
+  for (const BodiesInContact& active : active_.bodies()) pressed.emplace_back(active.bodyA, active.bodyB);
+  for (const SupportForce& support : *island_.resting.supports())
+    pressed.push_back(bodiesOf(island_.assembly, support.pair));
+  std::sort(pressed.begin(), pressed.end());
+  pressed.erase(std::unique(pressed.begin(), pressed.end()), pressed.end());
+  const auto record = [this](EventKind kind, const std::vector<std::pair<int, int>>& of,
+                             const std::vector<std::pair<int, int>>& others) {
+    for (const auto& pair : of)
+      if (!std::binary_search(others.begin(), others.end(), pair))
+        island_.log.record({island_.time, kind, pair.first, pair.second, Vec3::Zero(), Vec3::Zero(), 0});
+  };
+  record(EventKind::contactEnd, pressed_, pressed);
+  record(EventKind::contactBegin, pressed, pressed_);
+  pressed_ = std::move(pressed);
 }
 
 void EventContacts::noteShortMomentArms() {

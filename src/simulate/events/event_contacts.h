@@ -27,6 +27,7 @@ class EventContacts {
   TouchingFeatures touching();
 
   ActiveContacts& active() { return active_; }
+  const ActiveContacts& active() const { return active_; }
 
   /// Why contacts cannot last as rows, if they can't; else empty.
   std::string_view fallbackReason() const { return active_.fallbackReason(); }
@@ -54,6 +55,7 @@ class EventContacts {
   void noteTippingImpacts(const std::vector<Contact>& met, const VectorX& before);
   void project();
   void recordRests(const std::vector<char>& restedBefore, double zenoTime);
+  void recordLastingContacts();
 
   IslandState& island_;
   const EventTolerances& tolerances_;
@@ -61,7 +63,8 @@ class EventContacts {
   ActiveContacts active_;
   ComingToRest rest_;
   EventImpacts impacts_;
-  double shortMomentArm_;  // sizes of a body: rows do not serve contacts that a joint leaves less
+  std::vector<std::pair<int, int>> pressed_;  // scene bodies of active contacts, and of those of bodies at rest
+  double shortMomentArm_;                     // sizes of a body: rows do not serve contacts that a joint leaves less
 };
 
 }  // namespace cradle

@@ -7,6 +7,7 @@ namespace cradle {
 
 void EventLog::record(const Event& event) {
   events_.push_back(event);
+  if (isOfLastingContact(event.kind)) return;
   const bool isMet = event.kind == EventKind::impact || event.kind == EventKind::taut;  // the world, by a joint or rope
   if (event.bodyB != kWorld)
     latestBodies_ = {event.bodyA, event.bodyB};

@@ -131,7 +131,8 @@ void EventMotion::advance(double frame) {
   // The interpolant is that of the forces that act until the event.
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
   const Mechanism& mechanism = island_.assembly.mechanism;
-  contactsOfStep_ = mechanism.contacts;
+  contactsOfStep_ = mechanism.contacts, bodiesOfStep_ = bodiesInContact();
+  supportsOfStep_ = island_.resting.supports();
   constraintsOfStep_ = mechanism.constraints, pushesOfStep_ = mechanism.pushes;
   motorsOfStep_ = mechanism.motors;
 

@@ -43,8 +43,13 @@ class EventMotion {
   /// decides which.
   std::optional<double> offConstraintsFrom() const { return offConstraintsFrom_; }
 
-  /// Contacts that were active over the last step.
+  /// Contacts that were active over the last step, and what kept bodies at rest then.
   const std::vector<ContactConstraint>& contactsOfStep() const { return contactsOfStep_; }
+  std::shared_ptr<const std::vector<SupportForce>> supportsOfStep() const { return supportsOfStep_; }
+
+  /// The bodies of contacts that were active over the last step, and of those that are now.
+  const std::vector<BodiesInContact>& bodiesOfStep() const { return bodiesOfStep_; }
+  const std::vector<BodiesInContact>& bodiesInContact() const { return contacts_.active().bodies(); }
 
   /// Ties, pushes and motors that acted in the last step; what ended it may have changed them.
   const Constraints& constraintsOfStep() const { return constraintsOfStep_; }
@@ -123,6 +128,8 @@ class EventMotion {
   std::optional<RunningIntegral> ledgerOfStep_;
   std::vector<int> tautRowsBefore_;  // of ropes, before an event
   std::vector<ContactConstraint> contactsOfStep_;
+  std::vector<BodiesInContact> bodiesOfStep_;
+  std::shared_ptr<const std::vector<SupportForce>> supportsOfStep_;
   Constraints constraintsOfStep_;
   std::vector<PushForce> pushesOfStep_;
   std::vector<JointMotor> motorsOfStep_;

@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/interruption.h"
+#include "simulate/contact_wrenches.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -169,6 +170,30 @@ int HardSpheres::sceneBodyOf(int other) const {
 
 std::string HardSpheres::nameOf(int other) const {
   return scene_.bodies[static_cast<std::size_t>(sceneBodyOf(other))].name;
+}
+
+std::vector<ContactWrench> HardSpheres::contactWrenches() const {
+  WrenchSum sum;
+  for (int sphere = 0; sphere < world_.sphereCount(); ++sphere) {
+    const auto index = static_cast<std::size_t>(sphere);
+    const std::array<int, 3>& supports = flights_.supports(sphere);
+    const auto count = std::ranges::find(supports, -1) - supports.begin();
+    if (count == 0) continue;
+    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals(3, count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      normals.col(i) = world_.planes[static_cast<std::size_t>(supports[static_cast<std::size_t>(i)])].normal;
+    const Vec3 carried = (flights_.motionAt(sphere, time_).acceleration - world_.gravity) / world_.inverseMasses[index];
+    const Vec3 center = centerOfMass(state_, sphere);
+    // Planes of which two suffice share by the least forces.
+    const VectorX forces = normals.completeOrthogonalDecomposition().solve(carried);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const int plane = supports[static_cast<std::size_t>(i)];
+      const Vec3 normal = normals.col(i);
+      sum.add({world_.sceneBodies[index], sceneBodyOf(~plane), center - world_.radii[index] * normal,
+               -forces[i] * normal, Vec3::Zero()});
+    }
+  }
+  return sum.wrenches();
 }
 
 std::vector<Event> HardSpheres::takeEvents() {

@@ -24,6 +24,9 @@ class HardSpheres {
   /// Throws Error(limit) if collisions do not come to an end, or a sphere comes to lie on another; Error(interrupted).
   const VectorX& stateAt(double time);
 
+  /// What planes carry of spheres that roll or lie on them, in the state of the last call of stateAt.
+  std::vector<ContactWrench> contactWrenches() const;
+
   const Assembly& assembly() const { return assembly_; }
 
   /// Parabolas evaluated for collisions, ways out of cells, and frames.

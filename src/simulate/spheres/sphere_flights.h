@@ -45,6 +45,8 @@ class SphereFlights {
 
   /// A new parabola from `time` on; counts as a hit. `supports`: planes that carry the sphere, -1 for none.
   void strike(int sphere, double time, const UniformMotion& motion, const std::array<int, 3>& supports);
+  /// The planes that carry a sphere, -1 for none.
+  const std::array<int, 3>& supports(int sphere) const { return flights_[static_cast<std::size_t>(sphere)].supports; }
   long hits(int sphere) const { return flights_[static_cast<std::size_t>(sphere)].hits; }
 
   /// When a sphere leaves its cell.

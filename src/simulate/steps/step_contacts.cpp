@@ -17,7 +17,8 @@ constexpr std::size_t kFewLoaded = 8;        // contacts that last: with more, t
 constexpr double kReach = 2;                 // of the displacement of free motion: what others may make of it
 constexpr double kRestingReachRatio = 1e-3;  // of its size: the same, for bodies at rest
 constexpr double kNearOverlap = 10;  // of the deepest overlap: contacts so near may come to overlap by the correction
-constexpr int kMaxRemovals = 4;      // of overlaps in a step: each leaves about the square of the relative overlap
+constexpr double kPartOfContact = 1.0 / 60;  // s of the lighter body's weight: less is no event where contact lasts
+constexpr int kMaxRemovals = 4;  // of overlaps in a step: each leaves about the square of the relative overlap
 
 double closingSpeed(const Contact& contact, const VectorX& state) {
   return -openingSpeed(contact, state);
@@ -62,8 +63,7 @@ void StepContacts::resolveImpacts(double time, const VectorX& before, LimitEvent
   const std::vector<Vec3> impulses = stepping_.resolveImpact(touching_, timeStep_, state);
   recordFaults(time);
   for (std::size_t i = 0; i < impulses.size(); ++i) {
-    const double impulse = touching_[i].normal.dot(impulses[i]);
-    if (impulse > 0) log_.recordContact(time, EventKind::impact, touching_[i], impulse);
+    if (touching_[i].normal.dot(impulses[i]) > 0) record(time, touching_[i], impulses[i], true);
   }
 }
 
@@ -169,7 +169,7 @@ void StepContacts::recordAndLetSleep(double time, VectorX& state) {
     const double impulse = stepped.contact.normal.dot(stepped.impulse);
     if (impulse <= kRestSpeedFloor * lightest(stepped.contact)) continue;
     acting.push_back(stepped.contact);
-    if (stepped.isImpact) log_.recordContact(time, EventKind::impact, stepped.contact, impulse);
+    record(time, stepped.contact, stepped.impulse, stepped.isImpact);
   }
   if (stepsOnly_) letSleep(time, acting, state);
   willStepOnly_ = stepsOnly_ ? !acting.empty() : acting.size() > kFewLoaded;
@@ -194,6 +194,26 @@ void StepContacts::correctPenetrations(const LimitEvents& ropes, VectorX& state)
 bool StepContacts::hasImpact() const {
   const auto isImpact = [](const SteppedContact& stepped) { return stepped.isImpact; };
   return std::any_of(stepping_.contacts().begin(), stepping_.contacts().end(), isImpact);
+}
+
+/// Tells an impact as an event, unless its bodies pressed each other in the step before and it is less than
+/// kPartOfContact: that, and what is no impact, is a load of a contact that lasts.
+void StepContacts::record(double time, const Contact& contact, const Vec3& impulse, bool isImpact) {
+  const ColliderPair& pair = assembly_.geometry.pairs[contact.pair];
+  const std::pair bodies = bodiesOf(assembly_, pair);
+  const double normalImpulse = contact.normal.dot(impulse);
+  const bool isSmall = normalImpulse <= kPartOfContact * lightest(contact) * assembly_.mechanism.gravity.norm();
+  if (isImpact && !(isSmall && std::ranges::binary_search(pressedBefore_, bodies)))
+    log_.recordContact(time, EventKind::impact, contact, normalImpulse);
+  else
+    loads_.push_back(loadOf(contact, pair, impulse, assembly_));
+  pressed_.push_back(bodies);
+}
+
+std::vector<ContactLoad> StepContacts::takeLoads() {
+  std::sort(pressed_.begin(), pressed_.end());
+  pressedBefore_ = std::exchange(pressed_, {});
+  return std::exchange(loads_, {});
 }
 
 /// Mass (kg) of the lighter of the bodies at a contact.
@@ -270,7 +290,7 @@ void StepContacts::resolveImpactIslands(double time, const VectorX& before, Vect
     bookNumerical(energyConstant(assembly_.mechanism, approach), assembly_.mechanism, state);
     for (const ImpactContact& impact : impacts) {
       const double impulse = impact.contact.normal.dot(impact.impulse);
-      if (isHard && impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
+      if (impulse > 0) record(time, impact.contact, impact.impulse, isHard);
     }
   }
 }

@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "constraints/disjoint_sets.h"
 #include "impact/pairwise.h"
+#include "simulate/contact_wrenches.h"
 #include "simulate/island_state.h"
 #include "simulate/limit_events.h"
 #include "simulate/steps/contact_stepping.h"
@@ -46,6 +48,10 @@ class StepContacts {
   /// Records the impacts within the step that was solved last, and puts to rest bodies that are still at its end.
   void recordAndLetSleep(double time, VectorX& state);
 
+  /// Impulses of the contacts of the last step, and of impacts at its end, that were not told as events: of contacts
+  /// that last. To be called at the end of each step.
+  std::vector<ContactLoad> takeLoads();
+
   /// The impacts of this instant. `before` is the state at the step's start.
   void resolveImpacts(double time, const VectorX& before, LimitEvents& ropes, VectorX& state);
 
@@ -72,6 +78,7 @@ class StepContacts {
   void findStepContacts(const VectorX& before, const VectorX& state, double length);
   void findSimultaneous(const VectorX& state);
   double lightest(const Contact& contact) const;
+  void record(double time, const Contact& contact, const Vec3& impulse, bool isImpact);
   void letSleep(double time, const std::vector<Contact>& contacts, VectorX& state);
   void recordFaults(double time);
   void wakeTouched(double time, const VectorX& state);
@@ -91,6 +98,8 @@ class StepContacts {
   ContactStepping stepping_;
   std::vector<char> strikesInside_;  // by contact, of the next impact; until contacts are solved
   bool stepsOnly_ = false, willStepOnly_ = false;
+  std::vector<ContactLoad> loads_;                            // N s, of the last step
+  std::vector<std::pair<int, int>> pressed_, pressedBefore_;  // scene bodies in contact: in this step, the one before
 };
 
 }  // namespace cradle

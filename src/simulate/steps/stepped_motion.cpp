@@ -85,6 +85,7 @@ void SteppedMotion::advance(double frame) {
   if (hasContacts_) contacts_.recordAndLetSleep(time, island_.state);
   if (hasContacts_) contactEnd_ = island_.state;
   if (atEvent || !contacts_.usesTimeSteppingOnly()) contacts_.resolveImpacts(time, before_, ropes_, island_.state);
+  keepLoads();
   ropes_.resolve(time, island_.state);
   if (island_.makeChanges()) ropes_.resolve(time, island_.state);
   keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
@@ -95,6 +96,32 @@ void SteppedMotion::advance(double frame) {
   if (atEvent) countEvent();
   if (eventsInWindow_ > kManyEvents) contacts_.useTimeSteppingOnly();
   if (time >= static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
+}
+
+/// Keeps what contacts did in the step that has ended, and at its end; of a step without time with the next one.
+void SteppedMotion::keepLoads() {
+  const double begin = island_.step.time;
+  if (begin > island_.time - kTimeRounding * method_.timeStep) return;
+  loads_.push_back({begin, island_.time, contacts_.takeLoads()});
+  while (loads_.front().end < island_.time - kMeanTime - method_.timeStep) loads_.pop_front();
+}
+
+void SteppedMotion::addMeanLoads(double time, WrenchSum& sum) const {
+  if (loads_.empty()) return;
+  const double from = std::max(time - kMeanTime, loads_.front().begin);
+  const auto& bodies = island_.assembly.sceneBodies;
+  const auto moves = [&](int sceneBody) {
+    const auto found = std::lower_bound(bodies.begin(), bodies.end(), sceneBody);
+    return found != bodies.end() && *found == sceneBody &&
+           !island_.resting.isResting(static_cast<int>(found - bodies.begin()));
+  };
+  for (const StepLoads& step : loads_) {
+    const double within = std::min(step.end, time) - std::max(step.begin, from);
+    if (within <= 0) continue;
+    const double perTime = within / ((step.end - step.begin) * (time - from));
+    for (const ContactLoad& load : step.loads)
+      if (moves(load.bodyA) || moves(load.bodyB)) sum.add(load, perTime);
+  }
 }
 
 /// Ends the run where driven bodies press others into something, for no force keeps them apart, and where heavy ones

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cmath>
+#include <deque>
 
+#include "simulate/contact_wrenches.h"
 #include "simulate/energy_guard.h"
 #include "simulate/island_state.h"
 #include "simulate/limit_events.h"
@@ -31,6 +33,13 @@ class SteppedMotion {
   /// Forces (N or N m) of the motors in the last step, the mean of those that hold against contacts.
   const VectorX& motorForces() const { return motorForces_; }
 
+  /// s: over which forces of contacts have their mean. Those of single steps rattle.
+  static constexpr double kMeanTime = 1.0 / 60;
+
+  /// Adds the mean forces of contacts of bodies that do not rest, over kMeanTime up to `time` (s), or since these steps
+  /// began; not those of impacts that were told as events.
+  void addMeanLoads(double time, WrenchSum& sum) const;
+
   /// Whether all bodies of the island lie still.
   bool isAtRest() const;
 
@@ -57,6 +66,7 @@ class SteppedMotion {
   bool exhaustMotors();
   void shorten();
   void countEvent();
+  void keepLoads();
 
   IslandState& island_;
   LimitEvents& ropes_;
@@ -76,6 +86,11 @@ class SteppedMotion {
   VectorX contactEnd_;               // ... and led to this state
   VectorX motorForces_;
   std::vector<double> innerRadii_;  // m, of the colliders
+  struct StepLoads {
+    double begin, end;               // s
+    std::vector<ContactLoad> loads;  // impulses
+  };
+  std::deque<StepLoads> loads_;  // of the last steps, by kMeanTime
 };
 
 }  // namespace cradle
