@@ -12,7 +12,7 @@ find_package(OpenEXR 3.1 REQUIRED)
 if(CRADLE_TESTS OR NOT CRADLE_EGL)  # the tests hold one context against the other
   find_path(OSMESA_INCLUDE GL/osmesa.h REQUIRED)
 endif()
-if(CRADLE_TESTS OR CRADLE_EGL)
+if(CRADLE_TESTS OR CRADLE_EGL OR (CRADLE_BENCHMARKS AND CRADLE_PEERS))
   find_library(EGL EGL REQUIRED)
 endif()
 find_library(GLEW NAMES libGLEW.a REQUIRED)
