@@ -40,9 +40,9 @@ def scene(folder):
     return path
 
 
-def cpu_seconds(command):
+def cpu_seconds(command, **options):
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command, check=True)
+    subprocess.run(command, check=True, **options)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
@@ -69,4 +69,5 @@ def main():
             print(f"{passes:66}  {1e3 * whole:8.2f}  {1e3 * (whole - written):7.2f}  {1e-6 * sizes[passes]:8.2f}")
 
 
-main()
+if __name__ == "__main__":
+    main() if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else sys.exit(__doc__)
