@@ -51,7 +51,7 @@ struct CommandLine {
   PlotOptions plot;
   InspectOptions inspection;
   long frame = 0;
-  bool json = false, quiet = false, sideBySide = false;
+  bool json = false, quiet = false, sideBySide = false, exportsContacts = false;
   std::function<void()> command;
 };
 
@@ -279,12 +279,14 @@ void addQuestions(CLI::App& app, CommandLine& line) {
 
   auto* exported = addCommand(app, line, "export", "Write a trajectory as a table, or as a model that moves",
                               "cradle export cradle.sqlite -o cradle.csv\n  cradle export cradle.sqlite -o cradle.glb",
-                              [&] { exportTrajectory(line.input, line.output, line.quiet); });
+                              [&] { exportTrajectory(line.input, line.output, line.exportsContacts, line.quiet); });
   exported->add_option("trajectory", line.input, "trajectory file")->required();
   addOutput(
       exported, line,
-      ".csv: a table of states; .glb: glTF 2.0, moving in simulated time, joints with their bodies, springs, rods and "
-      "ropes drawn straight, without pushes, camera and lights");
+      ".csv: a table of states; .glb: glTF 2.0, moving in simulated time, with camera and lights, joints with their "
+      "bodies, springs, rods and ropes drawn straight, without pushes");
+  exported->add_flag("--contacts", line.exportsContacts,
+                     "the .csv is of contacts that last, with their forces, in place of states");
 }
 
 /// Says what was found where CLI11 would say only that it could not be converted, or take it for a value that is not

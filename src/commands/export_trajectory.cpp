@@ -12,9 +12,9 @@
 namespace cradle {
 namespace {
 
-void exportTable(const TrajectoryReader& reader, const std::string& path, bool quiet) {
+void exportTable(const TrajectoryReader& reader, const std::string& path, bool ofContacts, bool quiet) {
   Progress progress("Exporting", "frames", reader.frameCount(), quiet);
-  exportCsv(reader, path, [&](long done) {
+  (ofContacts ? exportContactsCsv : exportCsv)(reader, path, [&](long done) {
     throwIfInterrupted();
     progress.update(done);
   });
@@ -22,11 +22,13 @@ void exportTable(const TrajectoryReader& reader, const std::string& path, bool q
 
 }  // namespace
 
-void exportTrajectory(const std::string& trajectory, const std::string& output, bool quiet) {
+void exportTrajectory(const std::string& trajectory, const std::string& output, bool exportsContacts, bool quiet) {
   requireOtherFile(output, trajectory);
   const std::filesystem::path ending = std::filesystem::path(output).extension();
+  if (exportsContacts && ending != ".csv")
+    throw Error(ErrorKind::usage, output, "is no table: contacts are exported as FILE.csv");
   if (ending == ".csv")
-    exportTable(TrajectoryReader(trajectory), output, quiet);
+    exportTable(TrajectoryReader(trajectory), output, exportsContacts, quiet);
   else if (ending == ".glb")
     exportGlb(TrajectoryReader(trajectory), output, quiet);
   else

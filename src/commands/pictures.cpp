@@ -125,6 +125,7 @@ void copyTrajectory(const TrajectoryReader& trajectory, const std::string& path)
     writer.append(frame);
   }
   for (const Event& event : trajectory.events()) writer.append(event);
+  for (const CameraPose& camera : trajectory.cameras()) writer.append(camera);
   writer.finish(trajectory.cost());
 }
 

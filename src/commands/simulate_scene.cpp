@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands/body_list.h"
+#include "commands/camera_record.h"
 #include "commands/warnings.h"
 #include "core/console.h"
 #include "core/cpu_stopwatch.h"
@@ -143,12 +144,17 @@ Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
 
 void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet) {
   Progress progress("Simulating", "frames", lastFrame(scene) + 1, quiet);
+  CameraRecord cameras(scene, [&writer](const CameraPose& camera) { writer.append(camera); });
   const SimulationSink sink{[&](const Frame& frame) {
                               writer.append(frame);
+                              cameras.note(frame);
                               progress.update(frame.number + 1);
                               if (watch) watch->check(frame);
                             },
-                            [&](const Event& event) { writer.append(event); },
+                            [&](const Event& event) {
+                              writer.append(event);
+                              cameras.note(event);
+                            },
                             [&](const std::string& warning) {
                               progress.endLine();
                               warn(warning);
@@ -162,6 +168,7 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, St
                             [&](const LastingContact& contact) { writer.append(contact); },
                             [&](double time) { progress.showTime(time); }};
   const RunCost cost = simulate(scene, world, sink);
+  cameras.finish();
   if (watch) watch->finish();
   writer.finish(cost);
 }

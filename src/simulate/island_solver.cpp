@@ -334,6 +334,7 @@ void IslandSolver::addActiveLoads(bool isInside, WrenchSum& sum) {
   const std::vector<BodiesInContact> bodies = isInside ? events_->bodiesOfStep() : events_->bodiesInContact();
   if (bodies.empty()) return;
   const auto evaluate = [&] { frameEquations().evaluate(reportedTime_, reported_, derivative_); };
+  ++evaluationsOfLoads_;
   frameEquations().setMotorSteps(island_.equations.motorSteps());
   if (isInside) {
     withForcesOfStep(evaluate);

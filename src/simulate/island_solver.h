@@ -78,8 +78,11 @@ class IslandSolver {
   std::vector<ContactWrench> contactWrenches();
 
   const Assembly& assembly() const { return island_.assembly; }
+  /// Those of contactWrenches are left out: islands part by what their motion costs, which must not depend on what is
+  /// asked of it.
   long evaluations() const {
-    return island_.equations.evaluations() + (frameEquations_ ? frameEquations_->evaluations() : 0);
+    return island_.equations.evaluations() + (frameEquations_ ? frameEquations_->evaluations() : 0) -
+           evaluationsOfLoads_;
   }
 
   /// Events since the last call: up to the end of the step under way.
@@ -138,8 +141,9 @@ class IslandSolver {
   JointCoordinates coordinates_;
   ConstraintSolver solver_;
   std::unique_ptr<EquationsOfMotion> frameEquations_;  // none before they are asked for
-  std::unique_ptr<EventMotion> events_;                // or ...
-  std::unique_ptr<SteppedMotion> steps_;               // ... what moves the island
+  long evaluationsOfLoads_ = 0;
+  std::unique_ptr<EventMotion> events_;   // or ...
+  std::unique_ptr<SteppedMotion> steps_;  // ... what moves the island
   ChosenMethod method_;
   std::optional<ConservationRecord> record_;  // unless others judge the island
   std::optional<PromiseEnd> promiseEnd_;

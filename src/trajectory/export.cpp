@@ -17,6 +17,10 @@ constexpr std::string_view kBodyColumns =
     "time_s,frame,body,px_m,py_m,pz_m,qw,qx,qy,qz,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s";
 constexpr std::string_view kJointColumns = ",joint,coordinate,velocity,force";  // units go with the kind of the joint
 
+constexpr std::string_view kContactColumns =
+    "time_s,frame,contact,a,b,begin_s,end_s,fx_N,fy_N,fz_N,tx_N_m,ty_N_m,tz_N_m,x_m,y_m,z_m,normalx_N,normaly_N,"
+    "normalz_N,frictionx_N,frictiony_N,frictionz_N";
+
 /// Empty fields in place of some columns, each with its comma in front.
 std::string emptyFields(std::string_view columns) {
   return std::string(static_cast<std::size_t>(std::ranges::count(columns, ',')), ',');
@@ -57,21 +61,49 @@ class FrameLines {
   std::string header_, afterBody_, beforeJoint_;
 };
 
+/// Writes a header line, then the lines that appendFrame(number, lines) gives for each frame.
+template <class AppendFrame>
+void writeTable(const TrajectoryReader& reader, const std::string& path, std::string_view header,
+                const std::function<void(long done)>& progress, const AppendFrame& appendFrame) {
+  PartFile file(path);
+  file.write(fmt::format("{}\n", header));
+  fmt::memory_buffer lines;
+  for (long number = 0; number < reader.frameCount(); ++number) {
+    lines.clear();
+    appendFrame(number, lines);
+    file.write({lines.data(), lines.size()});
+    progress(number + 1);
+  }
+  file.complete();
+}
+
 }  // namespace
 
 void exportCsv(const TrajectoryReader& reader, const std::string& path,
                const std::function<void(long done)>& progress) {
   const FrameLines frameLines(reader.header());
-  PartFile file(path);
-  file.write(frameLines.header() + "\n");
-  fmt::memory_buffer lines;
-  for (long number = 0; number < reader.frameCount(); ++number) {
-    lines.clear();
-    frameLines.append(reader.readFrame(number), lines);
-    file.write({lines.data(), lines.size()});
-    progress(number + 1);
-  }
-  file.complete();
+  writeTable(reader, path, frameLines.header(), progress,
+             [&](long number, fmt::memory_buffer& lines) { frameLines.append(reader.readFrame(number), lines); });
+}
+
+void exportContactsCsv(const TrajectoryReader& reader, const std::string& path,
+                       const std::function<void(long done)>& progress) {
+  const std::vector<LastingContact> contacts = reader.contacts();
+  const auto nameOf = [&](int body) { return csvField(reader.header().bodies[static_cast<std::size_t>(body)].name); };
+  writeTable(reader, path, kContactColumns, progress, [&](long number, fmt::memory_buffer& lines) {
+    const double time = reader.frameTimes()[static_cast<std::size_t>(number)];
+    for (const ContactWrench& wrench : reader.contactsAt(number)) {
+      const LastingContact& contact = contacts[static_cast<std::size_t>(wrench.contact)];
+      const auto out = std::back_inserter(lines);
+      fmt::format_to(out, "{},{},{},{},{},{},", time, number, contact.id, nameOf(contact.bodyA), nameOf(contact.bodyB),
+                     contact.begin);
+      if (contact.end) fmt::format_to(out, "{}", *contact.end);
+      const Vec3 friction = wrench.force - wrench.normalForce;
+      for (const Vec3& vector : {wrench.force, wrench.torque, wrench.point, wrench.normalForce, friction})
+        fmt::format_to(out, ",{},{},{}", vector.x(), vector.y(), vector.z());
+      fmt::format_to(out, "\n");
+    }
+  });
 }
 
 }  // namespace cradle

@@ -13,4 +13,8 @@ namespace cradle {
 /// many are done, and may throw. FILE is replaced when all is written. Throws Error(output), and what reading throws.
 void exportCsv(const TrajectoryReader& reader, const std::string& path, const std::function<void(long done)>& progress);
 
+/// The same of contacts that last: for each frame one line for each contact there, with its force, and when it lasts.
+void exportContactsCsv(const TrajectoryReader& reader, const std::string& path,
+                       const std::function<void(long done)>& progress);
+
 }  // namespace cradle

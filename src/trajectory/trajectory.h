@@ -75,6 +75,14 @@ struct LastingContact {
   std::optional<double> end = {};  // s; none: not known yet
 };
 
+/// The camera of a frame.
+struct CameraPose {
+  long frame = 0;
+  Vec3 position = Vec3::Zero();         // m, world
+  Quat orientation = Quat::Identity();  // worldFromCamera: x right, y up, z against the view
+  double verticalFieldOfView = 0;       // rad
+};
+
 struct Frame {
   long number = 0;
   double time = 0;                // s

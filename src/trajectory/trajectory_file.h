@@ -41,6 +41,9 @@ class TrajectoryWriter {
   /// A contact, before its first frame, and again when it has ended.
   void append(const LastingContact& contact);
 
+  /// The camera of a frame, each once.
+  void append(const CameraPose& camera);
+
   bool hasFrame() const { return framesAppended_ > 0; }
 
   /// Completes the file and gives it its name, if it is to have one. There must be a frame. Throws Error(output).
@@ -100,6 +103,9 @@ class TrajectoryReader {
 
   /// What lasting contacts do at a frame, by their numbers. Amortised O(contacts) if frames are read in their order.
   std::vector<ContactWrench> contactsAt(long number) const;
+
+  /// By frame, of those whose camera was known. Empty in trajectories of earlier versions.
+  std::vector<CameraPose> cameras() const;
 
   /// Everything of the table `meta`, as text.
   const std::map<std::string, std::string>& meta() const { return meta_; }

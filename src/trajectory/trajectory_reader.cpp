@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string_view>
 
@@ -36,6 +37,7 @@ constexpr const char* kMaterialsOfMesh =
 constexpr const char* kTableNames = "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')";
 constexpr const char* kJointTableNames = "('joint', 'joint_state')";        // which earlier versions did not write
 constexpr const char* kContactTableNames = "('contact', 'contact_force')";  // the same
+constexpr const char* kCameraTableNames = "('camera')";
 constexpr const char* kTextureTableNames = "('texture', 'texture_coordinates')";  // only where there are textures
 
 /// The first bytes of a file, or all; empty if it cannot be read.
@@ -77,6 +79,7 @@ void requireTrajectory(Database& database, const std::string& path) {
   requireStored(database, kTableNames);
   requireStored(database, kJointTableNames);
   requireStored(database, kContactTableNames);
+  requireStored(database, kCameraTableNames);
   requireStored(database, kTextureTableNames);
   const std::int64_t version = oneInteger(database, "PRAGMA user_version");
   if (version != kSchemaVersion)
@@ -451,6 +454,23 @@ std::vector<LastingContact> TrajectoryReader::contacts() const {
       database.failDamaged(fmt::format("contact {} lasts when none can", contact.id));
   }
   return contacts;
+}
+
+std::vector<CameraPose> TrajectoryReader::cameras() const {
+  Database& database = *session_->database;
+  std::vector<CameraPose> cameras;
+  if (countTables(database, kCameraTableNames) < 1) return cameras;
+  Statement query =
+      database.prepare("SELECT frame, px, py, pz, qw, qx, qy, qz, verticalFieldOfView FROM camera ORDER BY frame");
+  while (query.step()) {
+    const CameraPose camera{static_cast<long>(query.integer(0)), vectorAt(query, 1),
+                            Quat(query.real(4), query.real(5), query.real(6), query.real(7)), query.real(8)};
+    if (!isPossible({camera.position, camera.orientation, Vec3::Zero(), Vec3::Zero()}) ||
+        !(camera.verticalFieldOfView > 0 && camera.verticalFieldOfView < std::numbers::pi))
+      database.failDamaged(fmt::format("the camera of frame {} is none that can be", camera.frame));
+    cameras.push_back(camera);
+  }
+  return cameras;
 }
 
 std::vector<ContactWrench> TrajectoryReader::contactsAt(long number) const {

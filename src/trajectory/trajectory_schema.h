@@ -15,8 +15,9 @@ CREATE TABLE mesh (id INTEGER PRIMARY KEY, name TEXT,
   vertices BLOB,   -- m, body's frame; 3 float64 each, little-endian
   normals BLOB,    -- unit, one per vertex; 3 float32
   triangles BLOB,  -- vertex numbers, counter-clockwise from outside; 3 uint32
-  material TEXT);  -- JSON: name, baseColor, firstTriangle, triangleCount, and texture if it has one, of each range of
+  material TEXT,   -- JSON: name, baseColor, firstTriangle, triangleCount, and texture if it has one, of each range of
                    -- triangles
+  vertexNumbers BLOB);  -- of each vertex, as scenes have them: those at one place share it; uint32
 CREATE TABLE body (id INTEGER PRIMARY KEY, name TEXT UNIQUE,
   motion TEXT,              -- dynamic, static or driven
   mesh INTEGER,             -- id, or null if it has a shape
@@ -54,6 +55,10 @@ CREATE TABLE contact_force (frame INTEGER, contact INTEGER,  -- a row where it d
   nx, ny, nz,        -- unit, from a to b: of the normal part
   normal, friction,  -- N, of the force: along that, and the rest
   PRIMARY KEY (frame, contact)) WITHOUT ROWID;
+CREATE TABLE camera (frame INTEGER PRIMARY KEY,  -- of pictures of the scene's size, once it is known
+  px, py, pz,      -- m, world
+  qw, qx, qy, qz,  -- world from camera: x right, y up, z against the view
+  verticalFieldOfView);  -- rad
 CREATE TABLE energy (frame INTEGER PRIMARY KEY, kinetic, potential, dissipated, work,  -- J
   px, py, pz,   -- kg m/s
   lx, ly, lz,   -- kg m^2/s, about the world origin

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/output_path.h"
 #include "core/part_lock.h"
+#include "mesh/number_distinct.h"
 #include "trajectory/database.h"
 #include "trajectory/trajectory_file.h"
 #include "trajectory/trajectory_schema.h"
@@ -102,7 +103,7 @@ void insertMeta(Database& database, const std::string& key, const auto& value) {
 }
 
 void insertMeshes(Database& database, const std::vector<Model>& meshes, const std::vector<SharedTexture>& textures) {
-  Statement insert = database.prepare("INSERT INTO mesh VALUES (?, ?, ?, ?, ?, ?)");
+  Statement insert = database.prepare("INSERT INTO mesh VALUES (?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t id = 0; id < meshes.size(); ++id) {
     const DrawnMesh& drawn = meshes[id].drawn;
     CRADLE_CHECK(drawn.normals.size() == drawn.vertices.size());
@@ -112,6 +113,8 @@ void insertMeshes(Database& database, const std::vector<Model>& meshes, const st
     insert.bind(4, std::as_bytes(std::span(drawn.normals)));
     insert.bind(5, std::as_bytes(std::span(drawn.triangles)));
     insert.bind(6, materialsAsJson(drawn.materials, textures, database));
+    const Numbering welded = numberPositions(drawn.vertices);
+    insert.bind(7, std::as_bytes(std::span(welded.numberOf)));
     insert.run();
   }
 }
@@ -223,10 +226,11 @@ struct TrajectoryWriter::Session {
         joint(database->prepare("INSERT INTO joint_state VALUES (?, ?, ?, ?, ?)")),
         contact(database->prepare("INSERT OR REPLACE INTO contact VALUES (?, ?, ?, ?, ?)")),
         force(database->prepare("INSERT INTO contact_force VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
+        camera(database->prepare("INSERT INTO camera VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         event(database->prepare("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}
 
   std::unique_ptr<Database> database;
-  Statement frame, state, energy, joint, contact, force, event;
+  Statement frame, state, energy, joint, contact, force, camera, event;
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::string& path, const TrajectoryHeader& header,
@@ -338,6 +342,16 @@ void TrajectoryWriter::append(const LastingContact& contact) {
   contact.end ? insert.bind(5, *contact.end) : insert.bindNull(5);
   insert.run();
   if (contact.end) lastForces_.erase(contact.id);
+}
+
+void TrajectoryWriter::append(const CameraPose& camera) {
+  CRADLE_CHECK(session_ && transactionWhole_);
+  const Vec3& p = camera.position;
+  const Quat& q = camera.orientation;
+  session_->camera.bind(1, camera.frame);
+  bindNumbers(session_->camera, 2,
+              std::array{p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), camera.verticalFieldOfView});
+  session_->camera.run();
 }
 
 void TrajectoryWriter::append(const Event& event) {

@@ -3,7 +3,7 @@
 
     command_line_test.py PROGRAM SOURCE_FOLDER
 """
-import ast, base64, csv, json, os, pty, re, resource, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
+import ast, base64, contextlib, csv, json, math, os, pty, re, resource, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
 
 PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 BALL = os.path.join(SOURCE, "assets", "ball.3ds")
@@ -742,6 +742,49 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(origins[0]["stateHash"], origins[1]["stateHash"])
         for name in names + ["camera.json", "events.json"]:
             self.assertEqual(content(self.path("parts/" + name)), content(self.path("all/" + name)), name)
+
+    def test_a_trajectory_has_the_cameras_of_its_pictures(self):
+        ball = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "linearVelocity": [2, 3, 0]}
+        cameras = {"chosen": {}, "pushed": {"pushes": [{"body": "ball", "point": [0, 0, 0], "force": [0, 40, 9], "start": 0.1, "duration": 0.05}]},
+                   "sideways": {"gravity": [0, 0, -9.81]},
+                   "named": {"camera": {"position": [0, 1, 3], "target": [0, 0, 0]}, "gravity": [-9.81, 0, 0]},
+                   "follows": {"camera": {"position": [0, 1, 3], "follow": {"body": "ball"}, "orbit": {"period": 4}}}}
+        for name, members in cameras.items():
+            path = self.write(name + ".json", scene(**{"duration": 0.3, "output": {"width": 96, "height": 54}, "bodies": [ball]} | members))
+            self.assertEqual(cradle("simulate", path, "-o", self.path(name + ".sqlite")).returncode, 0)
+            result = cradle("render", self.path(name + ".sqlite"), "-o", self.path(name), "--passes", "depth")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            with contextlib.closing(sqlite3.connect(self.path(name + ".sqlite"))) as database:
+                rows = database.execute("SELECT frame, px, py, pz, qw, qx, qy, qz, verticalFieldOfView FROM camera ORDER BY frame").fetchall()
+            frames = json.loads(content(self.path(name + "/camera.json")))["frames"]
+            self.assertEqual([row[0] for row in rows], [frame["frame"] for frame in frames])
+            for (_, *place, w, x, y, z, field), frame in zip(rows, frames):
+                turn = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
+                for row in range(3):
+                    for column, value in enumerate([*turn[row], place[row]]):
+                        self.assertAlmostEqual(value, frame["worldFromCamera"][row][column], delta=1e-12, msg=name)
+                self.assertAlmostEqual(27 / math.tan(field / 2), frame["K"][0][0], delta=1e-9)
+
+    def test_contacts_are_exported_as_a_table_of_their_own(self):
+        path = self.write("c.json", scene(duration=0.1, bodies=[
+            {"name": "box, \"old\"", "shape": {"box": {"size": [1, 1, 1]}}, "mass": 2, "position": [0, 0.5, 0]},
+            {"name": "ground", "shape": {"plane": {}}, "motion": "static"}]))
+        self.assertEqual(cradle("simulate", path, "-o", self.path("c.sqlite")).returncode, 0)
+        self.assertEqual(cradle("export", self.path("c.sqlite"), "-o", self.path("c.csv"), "--contacts").returncode, 0)
+        with open(self.path("c.csv"), newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([int(row["frame"]) for row in rows], list(range(len(rows))))
+        self.assertGreater(len(rows), 1)
+        for row in rows:
+            self.assertEqual((row["a"], row["b"], row["begin_s"], float(row["end_s"])), ('box, "old"', "ground", "0", 0.1))
+            self.assertAlmostEqual(float(row["fy_N"]), -2 * 9.81, delta=1e-9)
+            self.assertAlmostEqual(float(row["normaly_N"]), -2 * 9.81, delta=1e-9)
+            self.assertAlmostEqual(float(row["frictionx_N"]), 0, delta=1e-9)
+        result = cradle("export", self.path("c.sqlite"), "-o", self.path("c.glb"), "--contacts")
+        self.assertEqual((result.returncode, os.path.exists(self.path("c.glb"))), (2, False))
+        self.assertIn("FILE.csv", result.stderr)
 
     def test_passes_have_their_shapes_and_the_state_at_the_end_no_next_one(self):
         self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--passes", "all", "--frames", "5:7").returncode, 0)

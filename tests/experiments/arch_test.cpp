@@ -77,6 +77,32 @@ TEST(Arch, StandsIfALineOfThrustFitsIntoIt) {
   }
 }
 
+// Each stone by the forces at its two faces, which are the thrust; that is level at the crown, by symmetry. At rest
+// accelerations of 1e-6 g may be left; arms are 1 m at most.
+TEST(Arch, ForcesOfItsContactsHoldEachStone) {
+  const Trajectory run = runArch(0.15, 1);
+  const Frame& end = run.frames.back();
+  ASSERT_EQ(end.contacts.size(), kStones + 1u);
+  for (int stone = 0; stone < kStones; ++stone) {
+    const MassProperties& properties = run.header.bodies[static_cast<std::size_t>(stone + 1)].massProperties;
+    Vec3 force = properties.mass * Vec3(0, -kGravity, 0), torque = Vec3::Zero();
+    for (const ContactWrench& wrench : end.contacts) {
+      const double sign = wrench.bodyB == stone + 1 ? 1 : wrench.bodyA == stone + 1 ? -1 : 0;
+      const Vec3 arm = wrench.point - end.states[static_cast<std::size_t>(stone)].position;
+      force += sign * wrench.force, torque += sign * (wrench.torque + arm.cross(wrench.force));
+    }
+    const double most = 1e-6 * properties.mass * kGravity;
+    EXPECT_LT(force.norm(), most) << stone;
+    EXPECT_LT(torque.norm(), most) << stone;
+  }
+  const auto isAtCrown = [](const ContactWrench& wrench) {
+    return wrench.bodyA == kStones / 2 && wrench.bodyB == kStones / 2 + 1;
+  };
+  const auto crown = std::find_if(end.contacts.begin(), end.contacts.end(), isAtCrown);
+  ASSERT_NE(crown, end.contacts.end());
+  EXPECT_LT(std::abs(crown->force.y()), 1e-6 * std::abs(crown->force.x()));
+}
+
 // Hinges open where the line of thrust leaves it: at the crown and the springings outside, at the haunches inside.
 TEST(Arch, FallsIfNoLineOfThrustFitsIntoIt) {
   for (const double thickness : {0.08, 0.104}) {

@@ -22,7 +22,7 @@ Trajectory runOnGround(const std::string& bodies, double staticFriction, double 
                        const std::string& members) {
   return simulate(sceneWith(fmt::format(
       R"({}, "materials": {{"m": {{"restitution": 0, "staticFriction": {}, "dynamicFriction": {}}},
-        "smooth": {{"restitution": 0}}}},
+        "smooth": {{"restitution": 0, "staticFriction": 0, "dynamicFriction": 0}}}},
       "bodies": [{{"name": "ground", "motion": "static", "material": "m", "shape": {{"plane": {{}}}}}}{}])",
       members, staticFriction, dynamicFriction, bodies)));
 }
@@ -52,9 +52,10 @@ Sum onBody(const Frame& frame, int body, const BodyState& state) {
 // Each carries all that is above it. Bodies at rest have the forces that the search for rest left, to 1e-6 g, and here
 // to rounding of the solution.
 TEST(LastingContacts, OfAStackCarryWhatIsAboveThem) {
-  const Trajectory run = runOnGround(box("a", {1, 1, 1}, 1, {0, 0.5, 0}) + box("b", {0.8, 0.8, 0.8}, 2, {0.05, 1.4, 0}) +
-                                         box("c", {0.5, 0.5, 0.5}, 3, {0, 2.05, 0.1}),
-                                     0.5, 0.4, R"("duration": 1)");
+  const Trajectory run =
+      runOnGround(box("a", {1, 1, 1}, 1, {0, 0.5, 0}) + box("b", {0.8, 0.8, 0.8}, 2, {0.05, 1.4, 0}) +
+                      box("c", {0.5, 0.5, 0.5}, 3, {0, 2.05, 0.1}),
+                  0.5, 0.4, R"("duration": 1)");
   ASSERT_EQ(run.contacts.size(), 3u);
   for (const LastingContact& contact : run.contacts) {
     EXPECT_EQ(contact.begin, 0);
@@ -94,14 +95,14 @@ TEST(LastingContacts, OfALadderAtASmoothWallAreThoseOfStatics) {
   }
 }
 
-// On a slope of 30 degrees, gravity being turned: friction is the coefficient times the normal force, and goes on as long
-// as the block does. It stands on three times the distance to its centre of mass below that, where the resultant goes
-// through it: the accelerating block does not turn.
+// On a slope of 30 degrees, gravity being turned: friction is the coefficient times the normal force, and goes on as
+// long as the block does. It stands on three times the distance to its centre of mass below that, where the resultant
+// goes through it: the accelerating block does not turn.
 TEST(LastingContacts, OfASlidingBlockHaveTheFrictionOfItsWeight) {
   const double cosine = std::cos(std::numbers::pi / 6), mass = 3, friction = 0.2;
-  const Trajectory run = runOnGround(
-      box("block", {1, 0.4, 1}, mass, {0, 0.2, 0}), 0.25, friction,
-      fmt::format(R"("duration": 0.6, "gravity": [{}, {}, 0])", 0.5 * kGravity, -cosine * kGravity));
+  const Trajectory run =
+      runOnGround(box("block", {1, 0.4, 1}, mass, {0, 0.2, 0}), 0.25, friction,
+                  fmt::format(R"("duration": 0.6, "gravity": [{}, {}, 0])", 0.5 * kGravity, -cosine * kGravity));
   const double normal = mass * kGravity * cosine;
   for (const Frame& frame : run.frames) {
     const ContactWrench ground = wrenchOf(frame, 1, 0);
@@ -135,9 +136,8 @@ TEST(LastingContacts, BeginWhereABallLandsAndEndWhereItIsLifted) {
 
 // In steps of one length the forces of a stack are the mean of those of the steps, and what rattles is no event.
 TEST(LastingContacts, OfStepsBalanceWeights) {
-  const Trajectory run =
-      runOnGround(box("a", {1, 1, 1}, 1, {0, 0.5, 0}) + box("b", {0.8, 0.8, 0.8}, 2, {0.05, 1.4, 0}), 0.5, 0.4,
-                  R"("duration": 0.5, )" + methodText("rk4", 1.0 / 480));
+  const Trajectory run = runOnGround(box("a", {1, 1, 1}, 1, {0, 0.5, 0}) + box("b", {0.8, 0.8, 0.8}, 2, {0.05, 1.4, 0}),
+                                     0.5, 0.4, R"("duration": 0.5, )" + methodText("rk4", 1.0 / 480));
   ASSERT_EQ(run.contacts.size(), 2u);
   EXPECT_TRUE(eventsOf(run, EventKind::impact).empty());
   for (const LastingContact& contact : run.contacts) EXPECT_EQ(contact.begin, 0);
@@ -147,7 +147,8 @@ TEST(LastingContacts, OfStepsBalanceWeights) {
   }
 }
 
-// A step's impulses, and those of impacts that were told, are all that changes momentum beside gravity.
+// A step's impulses, and those of impacts that were told, are all that changes momentum beside gravity, but for what
+// the removal of overlaps takes: 3e-4 of the weight in one frame.
 TEST(LastingContacts, OfStepsChangeMomentumWithTheImpacts) {
   const Trajectory run = runOnGround(
       box("a", {0.4, 0.2, 0.3}, 1, {0, 0.6, 0}, R"(, "angularVelocity": [0.3, 0.2, 1], "linearVelocity": [1, 0, 0.2])"),
@@ -160,7 +161,7 @@ TEST(LastingContacts, OfStepsChangeMomentumWithTheImpacts) {
         impulse += event.impulse;
     const double change = now.states[0].linearVelocity.y() - before.states[0].linearVelocity.y();
     const double force = onBody(now, 1, now.states[0]).force.y();
-    EXPECT_NEAR(change, impulse + (force - kGravity) / 60, 1e-9) << now.time;
+    EXPECT_NEAR(change, impulse + (force - kGravity) / 60, 1e-3 * kGravity / 60) << now.time;
   }
 }
 
@@ -192,7 +193,7 @@ TEST(LastingContacts, OfHardSpheresCarryWhatLiesInAGroove) {
          {{"name": "right", "motion": "static", "material": "m", "shape": {{"plane": {{"normal": [-{0}, {0}, 0]}}}}}})",
       half);
   const Trajectory run = simulate(sceneWith(fmt::format(
-      R"("duration": 0.5, "materials": {{"m": {{"restitution": 1}}}}, "bodies": [{},
+      R"("duration": 0.5, "materials": {{"m": {{"restitution": 1, "staticFriction": 0, "dynamicFriction": 0}}}}, "bodies": [{},
         {{"name": "lying", "material": "m", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 2,
           "position": [0, {}, 0]}},
         {{"name": "bouncing", "material": "m", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1,

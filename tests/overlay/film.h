@@ -45,7 +45,7 @@ class Film : public ::testing::Test {
   }
 
   FilmOverlay overlay(const OverlayChoice& choice) const {
-    return {{scene_, view_, kWidth, kHeight, frameAt, kFrames, events_}, choice};
+    return {{scene_, view_, kWidth, kHeight, frameAt, kFrames, events_, [this](long) { return contacts_; }}, choice};
   }
 
   Image draw(const OverlayChoice& choice, long number) const {
@@ -64,6 +64,7 @@ class Film : public ::testing::Test {
   Scene scene_;
   View view_;
   std::vector<Event> events_;
+  std::vector<ContactWrench> contacts_;  // of every frame
 };
 
 }  // namespace cradle

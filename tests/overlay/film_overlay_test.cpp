@@ -70,6 +70,23 @@ TEST_F(Film, ImpactsAreShownForAWhileAndFade) {
   EXPECT_EQ(brightness(45), 0);  // 0.25 s later
 }
 
+// The force is on the body that moves, away from the one that is fixed; of two that move on both.
+TEST_F(Film, ForcesOfLastingContactsAreOnWhatMoves) {
+  contacts_ = {{0, 0, 1, Vec3(0, -8, 0), Vec3(0, -8, 0), Vec3::Zero(), Vec3(-0.5, -1, 0)},
+               {1, 0, 2, Vec3(2, 0, 0), Vec3(2, 0, 0), Vec3::Zero(), Vec3(0.5, -1, 0)}};
+  OverlayChoice choice;
+  choice.contacts = true;
+  const Image image = draw(choice, 30);
+  const double length = 0.14 * kSeenHeight;  // of the greatest; others go with the root
+  EXPECT_TRUE(isMarked(image, {-0.5, -1 + 0.93 * length, 0}));
+  EXPECT_FALSE(isMarked(image, {-0.5, -1 + 1.12 * length, 0}));
+  EXPECT_FALSE(isMarked(image, {-0.5, -1 - 0.2 * length, 0}));
+  for (const double way : {-0.5, 0.5}) {
+    EXPECT_TRUE(isMarked(image, {0.5 + 0.93 * way * length, -1, 0}));
+    EXPECT_FALSE(isMarked(image, {0.5 + 1.2 * way * length, -1, 0}));
+  }
+}
+
 TEST_F(Film, EnergyPlotStartsThePotentialAtItsLowest) {
   OverlayChoice choice;
   choice.plot = PlotKind::energy;

@@ -94,6 +94,20 @@ TEST_F(DamagedTrajectory, WithMissingRowsIsRefused) {
   expectRefused("DELETE FROM meta WHERE key = 'cpuSeconds'", "damaged");
 }
 
+TEST_F(DamagedTrajectory, WithContactsThatCannotBeIsRefused) {
+  const std::string contact = "INSERT INTO contact VALUES (0, 0, 1, 0.0, NULL); ";
+  const std::string force = "INSERT INTO contact_force VALUES (0, 0, 1.0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1.0, 0.0); ";
+  expectRefused("INSERT INTO contact VALUES (1, 0, 1, 0.0, NULL)", "contact is missing");
+  expectRefused("INSERT INTO contact VALUES (0, 0, 3, 0.0, NULL)", "contact names a body");
+  expectRefused("INSERT INTO contact VALUES (0, 0, 1, 0.5, 0.25)", "lasts when none can");
+  expectRefused("INSERT INTO contact VALUES (0, 0, 1, 0.5, 1.1e10)", "lasts when none can");
+  expectRefused(contact + force + "UPDATE contact_force SET contact = 1", "not there");
+  expectRefused(contact + force + "UPDATE contact_force SET tx = 1e100", "tx");
+  expectRefused(contact + force + "UPDATE contact_force SET x = NULL", "x");
+  expectRefused("INSERT INTO camera VALUES (0, 0.0, 0.0, 1e30, 1.0, 0.0, 0.0, 0.0, 0.5)", "camera of frame 0");
+  expectRefused("INSERT INTO camera VALUES (0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 4.0)", "camera of frame 0");
+}
+
 TEST_F(DamagedTrajectory, WithMissingTablesIsRefused) {
   for (const std::string table : {"meta", "mesh", "body", "frame", "state", "event", "energy"}) {
     expectRefused("DROP TABLE " + table, "not a trajectory");

@@ -163,6 +163,8 @@ inline void expectError(ErrorKind kind, const std::string& words, const std::fun
 inline void readAll(const std::string& path) {
   const TrajectoryReader reader(path);
   for (long number = 0; number < reader.frameCount(); ++number) reader.readFrame(number);
+  for (long number = 0; number < reader.frameCount(); ++number) reader.contactsAt(number);
+  reader.contacts(), reader.cameras();
   reader.events();
   reader.cost();
 }

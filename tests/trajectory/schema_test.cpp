@@ -39,18 +39,19 @@ class TrajectorySchema : public testing::Test {
 
 TEST_F(TrajectorySchema, HasTheTablesOfTheContract) {
   EXPECT_EQ(rows("SELECT name FROM sqlite_master WHERE type != 'index' ORDER BY name"),
-            (std::vector<std::string>{"body", "contact", "contact_force", "energy", "event", "frame", "joint",
+            (std::vector<std::string>{"body", "camera", "contact", "contact_force", "energy", "event", "frame", "joint",
                                       "joint_state", "mesh", "meta", "state"}));
 }
 
 TEST_F(TrajectorySchema, HasTheColumnsOfTheContractInItsOrder) {
   EXPECT_EQ(columnsOf(path_, "meta"), "key value");
-  EXPECT_EQ(columnsOf(path_, "mesh"), "id name vertices normals triangles material");
+  EXPECT_EQ(columnsOf(path_, "mesh"), "id name vertices normals triangles material vertexNumbers");
   EXPECT_EQ(columnsOf(path_, "body"), "id name motion mesh shape mass comx comy comz ixx iyy izz ixy ixz iyz");
   EXPECT_EQ(columnsOf(path_, "frame"), "id time");
   EXPECT_EQ(columnsOf(path_, "state"), "frame body px py pz qw qx qy qz vx vy vz wx wy wz");
   EXPECT_EQ(columnsOf(path_, "joint"), "id name kind a b");
   EXPECT_EQ(columnsOf(path_, "joint_state"), "frame joint coordinate velocity force");
+  EXPECT_EQ(columnsOf(path_, "camera"), "frame px py pz qw qx qy qz verticalFieldOfView");
   EXPECT_EQ(columnsOf(path_, "contact"), "id a b begin end");
   EXPECT_EQ(columnsOf(path_, "contact_force"), "frame contact fx fy fz tx ty tz x y z nx ny nz normal friction");
   EXPECT_EQ(columnsOf(path_, "event"), "time kind a b x y z nx ny nz impulse");
@@ -147,6 +148,9 @@ TEST_F(TrajectorySchema, HoldsMeshesAsLittleEndianArraysAndJson) {
   // The second vertex starts with 1.0 = 3ff0 0000 0000 0000, the second triangle is 3, 4, 5.
   EXPECT_EQ(rows("SELECT hex(substr(vertices, 25, 8)), hex(substr(triangles, 13, 12)) FROM mesh"),
             std::vector<std::string>{"000000000000F03F|030000000400000005000000"});
+  // Drawn vertices a, b, c, a, d, b, ... of corners that scenes number 0 to 3.
+  EXPECT_EQ(rows("SELECT hex(substr(vertexNumbers, 1, 24)), length(vertexNumbers) FROM mesh"),
+            std::vector<std::string>{"000000000100000002000000000000000300000001000000|48"});
   EXPECT_EQ(rows("SELECT material FROM mesh"),
             std::vector<std::string>{R"([{"name":"brass, \"old\" \\ \n","baseColor":"#ff0080","firstTriangle":0,)"
                                      R"("triangleCount":3},{"name":"","baseColor":"#00ff00","firstTriangle":3,)"
@@ -201,6 +205,21 @@ TEST(TrajectorySchemaOfContacts, HasRowsWhereForcesChange) {
       EXPECT_EQ(found[i].point, wrenches[number][i].point);
     }
   }
+}
+
+TEST_F(TrajectorySchema, HoldsCamerasAsTheyWereGiven) {
+  TrajectoryWriter writer(folder_.file("b.sqlite"), sampleHeader());
+  writer.append(sampleFrame(0));
+  writer.append(CameraPose{0, {1, 2, 3}, Quat(0.6, 0, 0.8, 0), 0.5});
+  writer.finish({});
+  EXPECT_EQ(rowsOf(folder_.file("b.sqlite"), "SELECT * FROM camera"),
+            std::vector<std::string>{"0|1.0|2.0|3.0|0.6|0.0|0.8|0.0|0.5"});
+  const std::vector<CameraPose> cameras = TrajectoryReader(folder_.file("b.sqlite")).cameras();
+  ASSERT_EQ(cameras.size(), 1u);
+  EXPECT_EQ(cameras[0].frame, 0);
+  EXPECT_EQ(cameras[0].position, Vec3(1, 2, 3));
+  EXPECT_EQ(cameras[0].orientation.coeffs(), Quat(0.6, 0, 0.8, 0).coeffs());
+  EXPECT_EQ(cameras[0].verticalFieldOfView, 0.5);
 }
 
 }  // namespace

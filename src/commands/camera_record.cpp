@@ -1,0 +1,61 @@
+#include "commands/camera_record.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/error.h"
+#include "render/body_place.h"
+#include "render/upright.h"
+#include "scene/camera_axes.h"
+
+namespace cradle {
+
+CameraRecord::CameraRecord(const Scene& scene, std::function<void(const CameraPose&)> tell)
+    : scene_(scene), tell_(std::move(tell)), drawnFromWorld_(uprightFromWorld(scene)) {
+  if (upOf(scene) != Vec3::UnitY()) upright_ = turned(drawnFromWorld_, scene);
+  const Scene& drawn = upright_ ? *upright_ : scene_;
+  if (drawn.camera)
+    path_.emplace(drawn);
+  else if (drawn.pushes.empty())
+    framing_.emplace(drawn, drawn.output.width, drawn.output.height);
+}
+
+void CameraRecord::note(const Event& event) {
+  if (event.kind == EventKind::pushStart || event.kind == EventKind::pushMissed)
+    pushes_.push_back(upright_ ? turned(drawnFromWorld_, event) : event);
+}
+
+void CameraRecord::note(const Frame& frame) {
+  ++count_;
+  const Frame seen = upright_ ? turned(drawnFromWorld_, frame) : frame;
+  if (framing_) return framing_->add(seen);
+  if (!scene_.camera) return frames_.push_back(seen);
+  if (!path_) return;
+  try {
+    tell(frame.number, path_->next(frame.time, placeBodies(upright_ ? *upright_ : scene_, seen)));
+  } catch (const Error&) {  // no pictures are drawn from there on
+    path_.reset();
+  }
+}
+
+void CameraRecord::finish() {
+  if (scene_.camera || count_ == 0) return;
+  const Scene& drawn = upright_ ? *upright_ : scene_;
+  if (!framing_) {
+    const auto frameAt = [this](long number) {
+      return frames_[static_cast<std::size_t>(std::min(number, count_ - 1))];
+    };
+    framing_.emplace(drawn, drawn.output.width, drawn.output.height, findShownPushes(drawn, pushes_, frameAt));
+    for (const Frame& frame : frames_) framing_->add(frame);
+  }
+  const Camera camera = framing_->view().camera;
+  for (long frame = 0; frame < count_; ++frame) tell(frame, camera);
+}
+
+void CameraRecord::tell(long frame, const Camera& camera) const {
+  const Quat worldFromDrawn = drawnFromWorld_.conjugate();
+  const Quat orientation = Quat(Mat3(worldFromDrawn * cameraAxes(camera))).normalized();
+  tell_({frame, worldFromDrawn * camera.position, orientation, camera.verticalFieldOfView});
+}
+
+}  // namespace cradle

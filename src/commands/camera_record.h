@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/camera_path.h"
+#include "render/framing.h"
+
+namespace cradle {
+
+/// The cameras of pictures of a scene's size, from a run under way. One that the scene names is known with each frame,
+/// one that is chosen after the last, from the whole motion.
+class CameraRecord {
+ public:
+  /// Keeps a reference to `scene`. `tell` gets each camera.
+  CameraRecord(const Scene& scene, std::function<void(const CameraPose&)> tell);
+
+  /// Events and frames in the order of time.
+  void note(const Event& event);
+  void note(const Frame& frame);
+
+  /// After the last frame.
+  void finish();
+
+ private:
+  void tell(long frame, const Camera& camera) const;
+
+  const Scene& scene_;
+  const std::function<void(const CameraPose&)> tell_;
+  const Quat drawnFromWorld_;
+  std::optional<Scene> upright_;  // the drawn one, if it is another
+  std::optional<CameraPath> path_;
+  std::optional<Framing>
+      framing_;  // of a chosen camera, unless pushes are shown, which must be known before frames are
+  std::vector<Event> pushes_;
+  std::vector<Frame> frames_;  // drawn, if pushes are shown
+  long count_ = 0;
+};
+
+}  // namespace cradle
