@@ -34,7 +34,7 @@ LIBRARY_UNITS = {
     "sqlite3.h": ["trajectory/database"],
     "stb/": ["image/png", "image/font", "mesh/texture"],
     "libdeflate.h": ["image/png"],
-    "OpenEXR/": ["truth/pass_files"],
+    "OpenEXR/": ["truth/pass_files", "verify/exr_reader"],
     "GL/": ["render"],
     "GL/osmesa.h": ["render/contexts/osmesa"],
     "EGL/": ["render/contexts/egl"],

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "commands/body_list.h"
-#include "commands/camera_record.h"
+#include "commands/run_cameras.h"
 #include "commands/warnings.h"
 #include "core/console.h"
 #include "core/cpu_stopwatch.h"
@@ -144,7 +144,7 @@ Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
 
 void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet) {
   Progress progress("Simulating", "frames", lastFrame(scene) + 1, quiet);
-  CameraRecord cameras(scene, [&writer](const CameraPose& camera) { writer.append(camera); });
+  RunCameras cameras(scene, [&writer](const CameraPose& camera) { writer.append(camera); });
   const SimulationSink sink{[&](const Frame& frame) {
                               writer.append(frame);
                               cameras.note(frame);

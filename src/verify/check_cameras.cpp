@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace cradle {
@@ -86,12 +87,27 @@ void checkNamed(const CameraRecord& record, const CameraDocument& document, cons
   comparison.addNumber("focal length", record.intrinsics(0, 0), focal, kCameraRounding * focal);
 }
 
+/// Against the camera that the trajectory has for a picture of this size.
+void checkKept(const CameraRecord& record, const CameraDocument& document, const CameraPose& kept,
+               const CameraComparison& comparison) {
+  const double focal = static_cast<double>(document.height) / 2 / std::tan(kept.verticalFieldOfView / 2);
+  comparison.add("position", Vec3(record.worldFromCamera.topRightCorner<3, 1>()), kept.position,
+                 kCameraRounding * (1 + kept.position.norm()));
+  comparison.add("rotation", Mat3(record.worldFromCamera.topLeftCorner<3, 3>()),
+                 Mat3(kept.orientation.toRotationMatrix()), kCameraRounding);
+  comparison.addNumber("focal length", record.intrinsics(0, 0), focal, kCameraRounding * focal);
+}
+
 }  // namespace
 
 void checkCameras(const VerifiedFilm& film, Findings& findings) {
   const CameraComparison whole(0, findings);
   whole.addNumber("number of cameras, the first", static_cast<double>(film.cameras.frames.size()),
                   static_cast<double>(film.trajectory.frameCount()), 0);
+  std::map<long, CameraPose> kept;  // a chosen camera depends on the picture's size
+  const Output& output = film.scene.output;
+  if (film.scene.camera || (film.cameras.width == output.width && film.cameras.height == output.height))
+    for (const CameraPose& camera : film.trajectory.cameras()) kept[camera.frame] = camera;
   for (std::size_t i = 0; i < film.cameras.frames.size(); ++i) {
     const CameraRecord& record = film.cameras.frames[i];
     const long frame = static_cast<long>(i);
@@ -100,6 +116,7 @@ void checkCameras(const VerifiedFilm& film, Findings& findings) {
     if (film.hasFrame(frame)) comparison.addNumber("time", record.time, film.trajectory.frameTimes()[i], 0);
     checkForm(record, film.cameras, comparison);
     if (const auto camera = namedCamera(film.scene, record.time)) checkNamed(record, film.cameras, *camera, comparison);
+    if (kept.contains(frame)) checkKept(record, film.cameras, kept[frame], comparison);
   }
 }
 

@@ -169,7 +169,7 @@ void InstanceCheck::checkMask(const InstanceRecord& record) const {
     apart += (*mask)[pixel] != (frame_.segmentation[pixel] == record.id);
   comparison_.add("run lengths", static_cast<double>(apart), 0,
                   fmt::format("other than segmentation in {} pixels", apart),
-                  "the mask of " + truthFileName("segmentation", frame_.number));
+                  "the mask of " + frame_.fileOf("segmentation"));
   const Extent extent = extentOf(*mask, film_.width());
   comparison_.addExact("bbox", listed(record.box), listed(extent.box));
   comparison_.addExact("area", record.area, extent.pixels);

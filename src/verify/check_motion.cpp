@@ -193,7 +193,7 @@ void MotionCheck::checkFlow(const std::vector<float>& flow, const char* kind, As
   if (flow.empty()) return;
   const auto to = neighbourAt(other);
   visitPixels([&](const MovingPixel& at) {
-    const FlowAt found{{truthFileName(kind, frame_.number), at.x, at.y},
+    const FlowAt found{{frame_.fileOf(kind), at.x, at.y},
                        {static_cast<double>(flow[2 * at.pixel]), static_cast<double>(flow[2 * at.pixel + 1])}};
     if (!to) return expectNone(found, aspect, "NaN, for there is no such frame");
     if (!isFollowed(at.pixel)) return;
@@ -251,13 +251,13 @@ void MotionCheck::checkHidden() {
   if (frame_.hidden.empty()) return;
   PixelCount count;
   const auto add = [&](bool holds, const MovingPixel& at, const char* found, const char* expected) {
-    count.add(holds, [&] { return Fault{{truthFileName("hidden", frame_.number), at.x, at.y}, found, expected}; });
+    count.add(holds, [&] { return Fault{{frame_.fileOf("hidden"), at.x, at.y}, found, expected}; });
   };
   const auto to = neighbourAt(frame_.number + 1);
   if (!to) {
     return visitPixels([&](const MovingPixel& at) {
       findings_.add(Aspect::hidden, frame_.hidden[at.pixel] == 1 ? 0 : 1, 0, [&] {
-        return Fault{{truthFileName("hidden", frame_.number), at.x, at.y}, "0", "1, for there is no next frame"};
+        return Fault{{frame_.fileOf("hidden"), at.x, at.y}, "0", "1, for there is no next frame"};
       });
     });
   }
@@ -319,7 +319,7 @@ void MotionCheck::checkReprojection() {
     const PictureRay ray{to.camera.position(), to.camera.rayAt(moved.place.x(), moved.place.y())};
     const bool isShown = *agrees && (!isHidden || !findBefore(solids, ray, moved.depth, id - 1).perhaps);
     const auto fault = [&] {
-      return Fault{{truthFileName("hidden", frame_.number), at.x, at.y},
+      return Fault{{frame_.fileOf("hidden"), at.x, at.y},
                    fmt::format("{}, and in the next frame {} at ({:.3f}, {:.3f})", isHidden ? 1 : 0,
                                isShown ? "the same" : "something else", moved.place.x(), moved.place.y()),
                    fmt::format("id {} at a depth of {:.9g} m there{}", id, moved.depth, isHidden ? " hidden" : "")};

@@ -61,9 +61,7 @@ class SurfaceCheck {
   void checkSilhouettes();
 
  private:
-  FoundPlace placeIn(const char* kind, const PixelRay& at) const {
-    return {truthFileName(kind, frame_.number), at.x, at.y};
-  }
+  FoundPlace placeIn(const char* kind, const PixelRay& at) const { return {frame_.fileOf(kind), at.x, at.y}; }
   const char* kindOfIds() const { return frame_.segmentation.empty() ? "instances" : "segmentation"; }
   std::string nameOfId(int id) const;
   void checkId(const PixelRay& at);

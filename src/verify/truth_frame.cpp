@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "verify/exr_reader.h"
 #include "verify/npy_reader.h"
 #include "verify/placed_solid.h"
 
@@ -17,8 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 8> kTruthKinds = {"depth",        "normal", "segmentation",      "flow",
-                                                    "backwardFlow", "hidden", "objectCoordinates", "instances"};
+constexpr const char* kExrKind = "passes";
+constexpr std::array<const char*, 9> kTruthKinds = {
+    "depth", "normal", "segmentation", "flow", "backwardFlow", "hidden", "objectCoordinates", "instances", kExrKind};
 constexpr std::size_t kDigits = 6;  // of a frame's number in a file's name
 
 /// The frame of a file; nothing if it is none of ground truth.
@@ -33,11 +35,18 @@ std::optional<long> frameOf(const std::string& name) {
   return std::nullopt;
 }
 
-template <class Number>
-std::vector<Number> readPass(const VerifiedFilm& film, const char* kind, long frame, std::size_t channels) {
-  const fs::path path = fs::path(film.folder) / truthFileName(kind, frame);
+bool isThere(const fs::path& path) {
   std::error_code missing;
-  if (!fs::exists(path, missing)) return {};
+  return fs::exists(path, missing);
+}
+
+template <class Number>
+std::vector<Number> readPass(const VerifiedFilm& film, const char* kind, const TruthFrame& frame,
+                             std::size_t channels) {
+  const fs::path path = fs::path(film.folder) / frame.fileOf(kind);
+  if (!isThere(path)) return {};
+  if (frame.isExr)
+    return readExr<Number>(path.string(), kind, channels, film.width(), film.height()).value_or(std::vector<Number>());
   std::vector<std::size_t> shape = {film.height(), film.width()};
   if (channels > 1) shape.push_back(channels);
   return readNpy<Number>(path.string(), shape);
@@ -81,19 +90,24 @@ std::vector<long> framesIn(const std::string& folder) {
 }
 
 std::string truthFileName(const std::string& kind, long frame) {
-  return fmt::format("{}_{:06}{}", kind, frame, kind == "instances" ? ".json" : ".npy");
+  return fmt::format("{}_{:06}{}", kind, frame, kind == "instances" ? ".json" : kind == kExrKind ? ".exr" : ".npy");
+}
+
+std::string TruthFrame::fileOf(const std::string& pass) const {
+  return truthFileName(isExr ? kExrKind : pass, number);
 }
 
 TruthFrame readTruthFrame(const VerifiedFilm& film, long number) {
   TruthFrame frame;
   frame.number = number;
-  frame.depth = readPass<float>(film, "depth", number, 1);
-  frame.normal = readPass<float>(film, "normal", number, 3);
-  frame.objectCoordinates = readPass<float>(film, "objectCoordinates", number, 3);
-  frame.flow = readPass<float>(film, "flow", number, 2);
-  frame.backwardFlow = readPass<float>(film, "backwardFlow", number, 2);
-  frame.segmentation = readPass<std::uint16_t>(film, "segmentation", number, 1);
-  frame.hidden = readPass<std::uint8_t>(film, "hidden", number, 1);
+  frame.isExr = isThere(fs::path(film.folder) / truthFileName(kExrKind, number));
+  frame.depth = readPass<float>(film, "depth", frame, 1);
+  frame.normal = readPass<float>(film, "normal", frame, 3);
+  frame.objectCoordinates = readPass<float>(film, "objectCoordinates", frame, 3);
+  frame.flow = readPass<float>(film, "flow", frame, 2);
+  frame.backwardFlow = readPass<float>(film, "backwardFlow", frame, 2);
+  frame.segmentation = readPass<std::uint16_t>(film, "segmentation", frame, 1);
+  frame.hidden = readPass<std::uint8_t>(film, "hidden", frame, 1);
   frame.instances = readInstances((fs::path(film.folder) / truthFileName("instances", number)).string());
   frame.ids = idsOf(frame, film.width(), film.height());
   frame.state = film.trajectory.readFrame(number);

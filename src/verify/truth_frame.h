@@ -62,15 +62,20 @@ struct TruthFrame {
   std::vector<int> ids;  // of `segmentation`, else those of the instances' bodies and kUnknownId
   Frame state;
   std::vector<RigidTransform> worldFromBody;
+  bool isExr = false;  // passes are layers of one file
+
+  /// The name of the file that has a pass.
+  std::string fileOf(const std::string& pass) const;
 };
 
 /// The frames that a folder has any file of but pictures, ascending. Throws Error(usage) if it cannot be read.
 std::vector<long> framesIn(const std::string& folder);
 
-/// KIND_000012.npy, of a kind of file.
+/// KIND_000012.npy, of a kind of file; of "passes" .exr, of "instances" .json.
 std::string truthFileName(const std::string& kind, long frame);
 
-/// Reads the files of a frame that are there; instances_NUMBER.json has to be. Throws Error(usage) for what is damaged.
+/// Reads the files of a frame that are there, of passes the .exr or else .npy; instances_NUMBER.json has to be. Throws
+/// Error(usage) for what is damaged.
 TruthFrame readTruthFrame(const VerifiedFilm& film, long frame);
 
 /// The mask of an annotation, row by row from above; nothing if its runs are none of a picture of this size.

@@ -162,6 +162,35 @@ class RightTruth(InFolder):
         checked = self.verifies(self.render("wires", path, "all"))
         self.assertGreater(checked["reprojection"], 50000)
 
+    def test_layers_of_openexr_files_hold_as_the_passes_of_numpy_files_do(self):
+        values = self.verifies(self.render("exr", self.scene, "all", "--pass-format", "exr", "--frames", "0:4"))
+        self.assertEqual(values, self.verifies(self.render("npy", self.scene, "all", "--frames", "0:4")))
+        self.assertGreater(values["depth"], 4 * WIDTH * HEIGHT - 1)
+        folder = self.path("exr")
+        os.rename(os.path.join(folder, "passes_000001.exr"), os.path.join(folder, "kept"))
+        shutil.copy(os.path.join(folder, "passes_000003.exr"), os.path.join(folder, "passes_000001.exr"))
+        result = cradle("verify", folder)
+        self.assertEqual(result.returncode, 9)
+        self.assertRegex(result.stderr, r"passes_000001.exr: pixel \(\d+, \d+\): depth")
+        os.truncate(os.path.join(folder, "passes_000001.exr"), 700)
+        result = cradle("verify", folder)
+        self.assertEqual((result.returncode, result.stderr.count("passes_000001.exr")), (2, 1), result.stderr)
+
+    def test_cameras_that_follow_or_are_chosen_are_those_of_the_trajectory(self):
+        follows = {"position": [0.5, 1.4, 3.2], "follow": {"body": "ball"}}
+        for name, members in (("follows", {"camera": follows}), ("chosen", {"camera": {}})):
+            folder = self.render(name + "_kept", self.write(name + "_kept.json", everything(**members)), "depth", "--frames", "0:3")
+            self.verifies(folder)
+            with open(os.path.join(folder, "camera.json")) as file:
+                document = json.load(file)
+            for key in ("worldFromCamera", "worldFromCameraOpenCV"):
+                document["frames"][2][key][0][3] += 1e-9
+            with open(os.path.join(folder, "camera.json"), "w") as file:
+                json.dump(document, file)
+            result = cradle("verify", folder)
+            self.assertEqual(result.returncode, 9)
+            self.assertIn("camera.json: camera: found position", result.stderr)
+
     def test_a_still_camera_and_one_that_is_chosen_hold(self):
         still = {"position": [0.5, 1.4, 3.2], "target": [0, 0.7, 0], "verticalFieldOfViewDegrees": 55}
         self.verifies(self.render("still", self.write("still.json", everything(camera=still)), "all", "--frames", "0:3"))

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "constraints/invariants.h"
 #include "core/error.h"
@@ -41,7 +42,8 @@ SteppedMotion::SteppedMotion(IslandState& island, LimitEvents& ropes, const Chos
       contacts_(island, method),
       guard_(island.assembly, island.state, method, island.scene.duration),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
-      windowStart_(island.time) {
+      windowStart_(island.time),
+      begin_(island.time) {
   for (const Collider& collider : island.assembly.geometry.colliders) innerRadii_.push_back(innerRadius(collider));
   countSteps();
   ropes_.setTimeStep(method.timeStep);
@@ -102,13 +104,14 @@ void SteppedMotion::advance(double frame) {
 void SteppedMotion::keepLoads() {
   const double begin = island_.step.time;
   if (begin > island_.time - kTimeRounding * method_.timeStep) return;
-  loads_.push_back({begin, island_.time, contacts_.takeLoads()});
-  while (loads_.front().end < island_.time - kMeanTime - method_.timeStep) loads_.pop_front();
+  std::vector<ContactLoad> loads = contacts_.takeLoads();
+  if (!loads.empty()) loads_.push_back({begin, island_.time, std::move(loads)});
+  while (!loads_.empty() && loads_.front().end < island_.time - kMeanTime - method_.timeStep) loads_.pop_front();
 }
 
 void SteppedMotion::addMeanLoads(double time, WrenchSum& sum) const {
   if (loads_.empty()) return;
-  const double from = std::max(time - kMeanTime, loads_.front().begin);
+  const double from = std::max(time - kMeanTime, begin_);
   const auto& bodies = island_.assembly.sceneBodies;
   const auto moves = [&](int sceneBody) {
     const auto found = std::lower_bound(bodies.begin(), bodies.end(), sceneBody);

@@ -90,7 +90,8 @@ class SteppedMotion {
     double begin, end;               // s
     std::vector<ContactLoad> loads;  // impulses
   };
-  std::deque<StepLoads> loads_;  // of the last steps, by kMeanTime
+  std::deque<StepLoads> loads_;  // of the last steps that had any, by kMeanTime
+  double begin_;                 // s, of the first step
 };
 
 }  // namespace cradle

@@ -11,11 +11,11 @@
 namespace cradle {
 
 /// The cameras of pictures of a scene's size, from a run under way. One that the scene names is known with each frame,
-/// one that is chosen after the last, from the whole motion.
-class CameraRecord {
+/// one that is chosen after the last, from the whole motion; none of a scene with many pushes, whose arrows take long.
+class RunCameras {
  public:
   /// Keeps a reference to `scene`. `tell` gets each camera.
-  CameraRecord(const Scene& scene, std::function<void(const CameraPose&)> tell);
+  RunCameras(const Scene& scene, std::function<void(const CameraPose&)> tell);
 
   /// Events and frames in the order of time.
   void note(const Event& event);

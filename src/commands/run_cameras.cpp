@@ -1,4 +1,4 @@
-#include "commands/camera_record.h"
+#include "commands/run_cameras.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,8 +9,13 @@
 #include "scene/camera_axes.h"
 
 namespace cradle {
+namespace {
 
-CameraRecord::CameraRecord(const Scene& scene, std::function<void(const CameraPose&)> tell)
+constexpr std::size_t kMostPushes = 256;  // each asks for the length of each other's arrow in each frame that shows it
+
+}  // namespace
+
+RunCameras::RunCameras(const Scene& scene, std::function<void(const CameraPose&)> tell)
     : scene_(scene), tell_(std::move(tell)), drawnFromWorld_(uprightFromWorld(scene)) {
   if (upOf(scene) != Vec3::UnitY()) upright_ = turned(drawnFromWorld_, scene);
   const Scene& drawn = upright_ ? *upright_ : scene_;
@@ -20,16 +25,19 @@ CameraRecord::CameraRecord(const Scene& scene, std::function<void(const CameraPo
     framing_.emplace(drawn, drawn.output.width, drawn.output.height);
 }
 
-void CameraRecord::note(const Event& event) {
+void RunCameras::note(const Event& event) {
   if (event.kind == EventKind::pushStart || event.kind == EventKind::pushMissed)
     pushes_.push_back(upright_ ? turned(drawnFromWorld_, event) : event);
 }
 
-void CameraRecord::note(const Frame& frame) {
+void RunCameras::note(const Frame& frame) {
   ++count_;
   const Frame seen = upright_ ? turned(drawnFromWorld_, frame) : frame;
   if (framing_) return framing_->add(seen);
-  if (!scene_.camera) return frames_.push_back(seen);
+  if (!scene_.camera) {
+    if (scene_.pushes.size() <= kMostPushes) frames_.push_back(seen);
+    return;
+  }
   if (!path_) return;
   try {
     tell(frame.number, path_->next(frame.time, placeBodies(upright_ ? *upright_ : scene_, seen)));
@@ -38,8 +46,8 @@ void CameraRecord::note(const Frame& frame) {
   }
 }
 
-void CameraRecord::finish() {
-  if (scene_.camera || count_ == 0) return;
+void RunCameras::finish() {
+  if (scene_.camera || count_ == 0 || (!framing_ && frames_.empty())) return;
   const Scene& drawn = upright_ ? *upright_ : scene_;
   if (!framing_) {
     const auto frameAt = [this](long number) {
@@ -52,7 +60,7 @@ void CameraRecord::finish() {
   for (long frame = 0; frame < count_; ++frame) tell(frame, camera);
 }
 
-void CameraRecord::tell(long frame, const Camera& camera) const {
+void RunCameras::tell(long frame, const Camera& camera) const {
   const Quat worldFromDrawn = drawnFromWorld_.conjugate();
   const Quat orientation = Quat(Mat3(worldFromDrawn * cameraAxes(camera))).normalized();
   tell_({frame, worldFromDrawn * camera.position, orientation, camera.verticalFieldOfView});
