@@ -65,8 +65,8 @@ std::optional<std::vector<Number>> readExr(const std::string& path, const std::s
     throw;
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception& failed) {
-    refuseExr(path, fmt::format("cannot be read ({})", failed.what()));
+  } catch (const std::exception&) {
+    refuseExr(path, "is damaged, or no OpenEXR file");
   }
   if constexpr (std::is_same_v<Number, float>) {
     return stored;

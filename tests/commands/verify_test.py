@@ -359,7 +359,7 @@ class PlantedFaults(InFolder):
     def test_a_camera_of_another_frame(self):
         self.edit("camera.json", lambda document: document["frames"][3].update(
             {key: document["frames"][4][key] for key in ("worldFromCamera", "worldFromCameraOpenCV")}))
-        self.finds("camera.json: camera: found position", "depth_000003.npy", "flow_000003.npy")
+        self.finds("camera.json: camera: found", "depth_000003.npy", "flow_000003.npy")
 
     def test_wrong_numbers_of_a_body(self):
         for key, wrong in (("mass", 2.5), ("restitution", 0.25), ("dynamicFriction", 0.5), ("category", "tool"), ("motion", "static"),
