@@ -11,20 +11,10 @@ ContactLoad loadOf(const Contact& contact, const ColliderPair& pair, const Vec3&
   return {a, b, contact.point, normalForce, force - normalForce};
 }
 
-/// The pair of a load, new if there is none yet. Loads mostly come in the order of pairs.
-WrenchSum::Pair& WrenchSum::pairOf(const ContactLoad& load) {
-  const std::pair bodies{load.bodyA, load.bodyB};
-  const auto bodiesOfPair = [](const Pair& pair) { return std::pair{pair.bodyA, pair.bodyB}; };
-  if (!pairs_.empty() && bodiesOfPair(pairs_.back()) == bodies) return pairs_.back();
-  if (pairs_.empty() || bodiesOfPair(pairs_.back()) < bodies)
-    return pairs_.emplace_back(Pair{load.bodyA, load.bodyB, load.point});
-  const auto at = std::ranges::lower_bound(pairs_, bodies, {}, bodiesOfPair);
-  if (bodiesOfPair(*at) == bodies) return *at;
-  return *pairs_.insert(at, Pair{load.bodyA, load.bodyB, load.point});
-}
-
 void WrenchSum::add(const ContactLoad& load, double fraction) {
-  Pair& pair = pairOf(load);
+  if (pairs_.empty() || pairs_.back().bodies() != std::pair(load.bodyA, load.bodyB))
+    pairs_.push_back({load.bodyA, load.bodyB, load.point});
+  Pair& pair = pairs_.back();
   const Vec3 normalForce = fraction * load.normalForce, force = normalForce + fraction * load.friction;
   const Vec3 point = load.point - pair.origin;
   const double weight = normalForce.norm();
@@ -33,12 +23,22 @@ void WrenchSum::add(const ContactLoad& load, double fraction) {
   pair.weight += weight, pair.weighted += weight * point;
 }
 
-std::vector<ContactWrench> WrenchSum::wrenches(double factor) const {
+void WrenchSum::Pair::add(const Pair& other) {
+  const Vec3 shift = other.origin - origin;
+  force += other.force, normalForce += other.normalForce;
+  torque += other.torque + shift.cross(other.force);
+  weight += other.weight, weighted += other.weighted + other.weight * shift;
+}
+
+std::vector<ContactWrench> WrenchSum::wrenches() {
+  std::ranges::stable_sort(pairs_, {}, &Pair::bodies);
   std::vector<ContactWrench> found;
-  for (const Pair& pair : pairs_) {
+  for (std::size_t i = 0; i < pairs_.size();) {
+    Pair& pair = pairs_[i];
+    for (++i; i < pairs_.size() && pairs_[i].bodies() == pair.bodies(); ++i) pair.add(pairs_[i]);
     const Vec3 center = pair.weight > 0 ? Vec3(pair.weighted / pair.weight) : Vec3(Vec3::Zero());
-    found.push_back({-1, pair.bodyA, pair.bodyB, factor * pair.force, factor * pair.normalForce,
-                     factor * (pair.torque - center.cross(pair.force)), pair.origin + center});
+    found.push_back({-1, pair.bodyA, pair.bodyB, pair.force, pair.normalForce,
+                     Vec3(pair.torque - center.cross(pair.force)), Vec3(pair.origin + center)});
   }
   return found;
 }

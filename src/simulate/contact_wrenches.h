@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "collision/separation.h"
@@ -26,20 +27,23 @@ class WrenchSum {
   /// Adds a fraction of a load.
   void add(const ContactLoad& load, double fraction = 1);
 
-  /// The wrenches times `factor`, ascending by pairs of bodies.
-  std::vector<ContactWrench> wrenches(double factor = 1) const;
+  /// The wrenches, ascending by pairs of bodies. To be called once, after the last load.
+  std::vector<ContactWrench> wrenches();
 
  private:
+  /// The sum of loads that came one after the other.
   struct Pair {
     int bodyA, bodyB;
     Vec3 origin;  // m: of moments and points
     Vec3 force = Vec3::Zero(), normalForce = Vec3::Zero(), torque = Vec3::Zero();
     double weight = 0;             // N or N s, of the points
     Vec3 weighted = Vec3::Zero();  // N m or N m s: sum of weights times points
-  };
-  Pair& pairOf(const ContactLoad& load);
 
-  std::vector<Pair> pairs_;  // ascending by bodies
+    std::pair<int, int> bodies() const { return {bodyA, bodyB}; }
+    void add(const Pair& other);
+  };
+
+  std::vector<Pair> pairs_;
 };
 
 }  // namespace cradle
