@@ -13,6 +13,9 @@ namespace cradle {
 namespace {
 
 void exportTable(const TrajectoryReader& reader, const std::string& path, bool ofContacts, bool quiet) {
+  if (ofContacts && !reader.hasContacts())
+    throw Error(ErrorKind::usage, reader.path(),
+                "tells of no contacts that last, as it is of an earlier version; make it again with `cradle simulate`");
   Progress progress("Exporting", "frames", reader.frameCount(), quiet);
   (ofContacts ? exportContactsCsv : exportCsv)(reader, path, [&](long done) {
     throwIfInterrupted();

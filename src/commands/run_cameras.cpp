@@ -12,6 +12,7 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kMostPushes = 256;  // each asks for the length of each other's arrow in each frame that shows it
+constexpr std::size_t kMostStates = 1'000'000;  // that are kept, 0.1 GB
 
 }  // namespace
 
@@ -32,22 +33,31 @@ void RunCameras::note(const Event& event) {
 
 void RunCameras::note(const Frame& frame) {
   ++count_;
-  const Frame seen = upright_ ? turned(drawnFromWorld_, frame) : frame;
-  if (framing_) return framing_->add(seen);
-  if (!scene_.camera) {
-    if (scene_.pushes.size() <= kMostPushes) frames_.push_back(seen);
-    return;
-  }
+  if (!upright_) return noteDrawn(frame);
+  noteDrawn(turned(drawnFromWorld_, frame));
+}
+
+void RunCameras::noteDrawn(const Frame& frame) {
+  if (framing_) return framing_->add(frame);
+  if (!scene_.camera) return keep(frame);
   if (!path_) return;
   try {
-    tell(frame.number, path_->next(frame.time, placeBodies(upright_ ? *upright_ : scene_, seen)));
+    tell(frame.number, path_->next(frame.time, placeBodies(upright_ ? *upright_ : scene_, frame)));
   } catch (const Error&) {  // no pictures are drawn from there on
     path_.reset();
   }
 }
 
+void RunCameras::keep(const Frame& frame) {
+  const std::size_t states = static_cast<std::size_t>(count_) * frame.states.size();
+  keepsFrames_ = keepsFrames_ && scene_.pushes.size() <= kMostPushes && states <= kMostStates;
+  if (!keepsFrames_) return frames_.clear();
+  frames_.push_back(frame);
+  frames_.back().contacts = {};
+}
+
 void RunCameras::finish() {
-  if (scene_.camera || count_ == 0 || (!framing_ && frames_.empty())) return;
+  if (scene_.camera || count_ == 0 || !keepsFrames_) return;
   const Scene& drawn = upright_ ? *upright_ : scene_;
   if (!framing_) {
     const auto frameAt = [this](long number) {
@@ -61,6 +71,7 @@ void RunCameras::finish() {
 }
 
 void RunCameras::tell(long frame, const Camera& camera) const {
+  if (!isPossiblePlace(camera.position)) return;
   const Quat worldFromDrawn = drawnFromWorld_.conjugate();
   const Quat orientation = Quat(Mat3(worldFromDrawn * cameraAxes(camera))).normalized();
   tell_({frame, worldFromDrawn * camera.position, orientation, camera.verticalFieldOfView});

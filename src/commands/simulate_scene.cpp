@@ -167,7 +167,13 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, St
                             },
                             [&](const LastingContact& contact) { writer.append(contact); },
                             [&](double time) { progress.showTime(time); }};
-  const RunCost cost = simulate(scene, world, sink);
+  RunCost cost;
+  try {
+    cost = simulate(scene, world, sink);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::unstable) cameras.finish();  // its frames may be kept
+    throw;
+  }
   cameras.finish();
   if (watch) watch->finish();
   writer.finish(cost);

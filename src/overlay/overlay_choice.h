@@ -18,7 +18,8 @@ struct OverlayChoice {
   std::optional<PlotKind> plot;
   std::string plottedBody;  // name, of PlotKind::height
 
-  /// Whether the film has to be known to its end before its first picture: sizes go with its greatest speed or impulse.
+  /// Whether the film has to be known to its end before its first picture: sizes go with its greatest speed, impulse or
+  /// force.
   bool needsWholeFilm() const { return contacts || velocities || plot; }
 };
 

@@ -7,8 +7,9 @@ namespace cradle {
 
 ContactLoad loadOf(const Contact& contact, const ColliderPair& pair, const Vec3& force, const Assembly& assembly) {
   const auto [a, b] = bodiesOf(assembly, pair);
-  const Vec3 normalForce = contact.normal.dot(force) * contact.normal;
-  return {a, b, contact.point, normalForce, force - normalForce};
+  const double pressure = contact.normal.dot(force);
+  const Vec3 normalForce = pressure * contact.normal;
+  return {a, b, contact.point, pressure, normalForce, force - normalForce};
 }
 
 void WrenchSum::add(const ContactLoad& load, double fraction) {
@@ -17,7 +18,7 @@ void WrenchSum::add(const ContactLoad& load, double fraction) {
   Pair& pair = pairs_.back();
   const Vec3 normalForce = fraction * load.normalForce, force = normalForce + fraction * load.friction;
   const Vec3 point = load.point - pair.origin;
-  const double weight = normalForce.norm();
+  const double weight = fraction * load.pressure;
   pair.force += force, pair.normalForce += normalForce;
   pair.torque += fraction * load.torque + point.cross(force);
   pair.weight += weight, pair.weighted += weight * point;

@@ -11,8 +11,9 @@ namespace cradle {
 
 /// What acts on B at one point of a contact: a force, or an impulse over some time.
 struct ContactLoad {
-  int bodyA = 0, bodyB = 0;                                  // of the scene
-  Vec3 point = Vec3::Zero();                                 // m, world
+  int bodyA = 0, bodyB = 0;   // of the scene
+  Vec3 point = Vec3::Zero();  // m, world
+  double pressure = 0;        // N or N s: with which A presses along the normal; < 0: pulls
   Vec3 normalForce = Vec3::Zero(), friction = Vec3::Zero();  // N or N s, world
   Vec3 torque = Vec3::Zero();                                // N m or N m s, beside the moments of both
 };
@@ -21,7 +22,7 @@ struct ContactLoad {
 ContactLoad loadOf(const Contact& contact, const ColliderPair& pair, const Vec3& force, const Assembly& assembly);
 
 /// Adds loads up to one wrench for each pair of bodies, at its centre of pressure: the mean of the points, weighted by
-/// their normal forces.
+/// their pressures.
 class WrenchSum {
  public:
   /// Adds a fraction of a load.

@@ -72,6 +72,7 @@ IslandGroup::IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly al
   visitNear(kApartWindows * windowLength(), kApartMargin, [&](int a, int b) { return joined.join(a, b), true; });
   regroup(setsOf(std::move(joined)));
   addWindow(0, {});
+  tellsContacts_ = false;
 }
 
 const VectorX& IslandGroup::stateAt(double time, const std::function<void(double time)>& reached) {
@@ -365,7 +366,9 @@ void IslandGroup::move(Island& island, const std::vector<double>& times,
     island.snapshots.reserve(times.size());
     for (const double time : times) {
       const VectorX& state = island.solver->stateAt(time, reached);
-      island.snapshots.push_back({time, state, island.solver->jointStates(), island.solver->contactWrenches()});
+      island.snapshots.push_back({time, state, island.solver->jointStates(), {}});
+      const bool isFrame = island.snapshots.size() < times.size();
+      if (tellsContacts_ && isFrame) island.snapshots.back().contacts = island.solver->contactWrenches();
     }
     if (islands_.size() > kManyIslands) island.solver->releaseScratch();
   } catch (const Error& error) {
@@ -523,7 +526,8 @@ void IslandGroup::takeEventsUntil(double time) {
 void IslandGroup::takeFirstEvents(Island& island) const {
   const auto isTold = [&](int body) { return isToldResting_[static_cast<std::size_t>(body)] != 0; };
   for (const Event& event : island.solver->takeEvents())
-    if (event.kind == EventKind::rest && !isTold(event.bodyA)) island.events.push_back(event);
+    if ((event.kind == EventKind::rest && !isTold(event.bodyA)) || event.kind == EventKind::contactBegin)
+      island.events.push_back(event);
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     const std::size_t body = static_cast<std::size_t>(island.bodies[i]);
     if (const int sceneBody = all_.sceneBodies[body]; isTold(sceneBody) && !island.solver->isResting(i))

@@ -47,7 +47,9 @@ class IslandGroup {
   /// As those of IslandSolver, of all bodies.
   const Assembly& assembly() const { return all_; }
   const std::vector<JointState>& jointStates() const { return frames_.front().joints; }
+  /// Of frames after a call of tellContacts.
   const std::vector<ContactWrench>& contactWrenches() const { return frames_.front().contacts; }
+  void tellContacts() { tellsContacts_ = true; }
   long evaluations() const;
   std::vector<Event> takeEvents() { return std::exchange(events_, {}); }
   std::vector<std::string> takeWarnings() { return std::exchange(warnings_, {}); }
@@ -131,6 +133,7 @@ class IslandGroup {
   double stretch_ = 1;               // of the last window, over windowLength
   std::vector<Island> islands_;      // in the order of their first clusters
   Snapshot start_;                   // of the window under way
+  bool tellsContacts_ = true;        // of frames; of the first one in any case
   Ledger settled_ = Ledger::Zero();  // J: ledgers of islands that are no more
   std::deque<Snapshot> frames_;      // that were not asked for yet; the first is the last one that was
   long nextFrame_ = 0;

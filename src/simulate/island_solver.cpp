@@ -320,12 +320,13 @@ VectorX IslandSolver::motorForces(double time) {
 std::vector<ContactWrench> IslandSolver::contactWrenches() {
   const bool isInside = events_ && reportedTime_ < island_.time - sameTime(reportedTime_);
   WrenchSum sum;
+  if (steps_) {
+    steps_->addMeanLoads(reportedTime_, sum);
+    return sum.wrenches();
+  }
   for (const SupportForce& support : isInside ? *events_->supportsOfStep() : *island_.resting.supports())
     sum.add(loadOf(support.contact, support.pair, support.force, island_.assembly));
-  if (steps_)
-    steps_->addMeanLoads(reportedTime_, sum);
-  else
-    addActiveLoads(isInside, sum);
+  addActiveLoads(isInside, sum);
   return sum.wrenches();
 }
 
@@ -345,8 +346,9 @@ void IslandSolver::addActiveLoads(bool isInside, WrenchSum& sum) {
   const std::vector<ContactForce>& forces = frameEquations().contactForces();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const double sign = bodies[i].isMirrored ? 1 : -1;  // forces are on A of the constraint
-    sum.add({bodies[i].bodyA, bodies[i].bodyB, forces[i].point, sign * forces[i].normal * forces[i].direction,
-             sign * forces[i].tangential});
+    const Vec3 normalForce = sign * forces[i].normal * forces[i].direction, friction = sign * forces[i].tangential;
+    if (!((normalForce + friction).norm() < kLargestNumber)) continue;  // friction is about to jam: none is known
+    sum.add({bodies[i].bodyA, bodies[i].bodyB, forces[i].point, forces[i].normal, normalForce, friction});
   }
 }
 

@@ -74,7 +74,7 @@ class IslandSolver {
   const std::vector<JointState>& jointStates() const { return jointStates_; }
 
   /// What lasting contacts do in the state of the last call of stateAt; in steps of one length, their mean over the
-  /// last kMeanTime. A contact that a joint holds is a constraint, and not among them.
+  /// last StepContacts::kContactTime. A contact that a joint holds is a constraint, and not among them.
   std::vector<ContactWrench> contactWrenches();
 
   const Assembly& assembly() const { return island_.assembly; }

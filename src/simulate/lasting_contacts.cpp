@@ -45,7 +45,8 @@ void LastingContacts::note(Frame& frame) {
 }
 
 void LastingContacts::finish() {
-  while (!lasting_.empty()) end(lasting_.begin()->first, *lastFrame_);
+  while (!lasting_.empty() && lastFrame_)
+    end(lasting_.begin()->first, std::max(*lastFrame_, lasting_.begin()->second.begin));
 }
 
 std::vector<LastingContact> LastingContacts::takeChanged() {

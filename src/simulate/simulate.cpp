@@ -37,6 +37,12 @@ void tellOfContacts(LastingContacts& contacts, const SimulationSink& sink) {
   for (const LastingContact& contact : contacts.takeChanged()) sink.contact(contact);
 }
 
+void endContacts(LastingContacts& contacts, const SimulationSink& sink) {
+  if (!sink.contact) return;
+  contacts.finish();
+  tellOfContacts(contacts, sink);
+}
+
 }  // namespace
 
 TrajectoryHeader headerOf(const Scene& scene, const Plan& plan) {
@@ -78,10 +84,19 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
   if (sink.reached) note = [&sign](double time) { sign.note(time); };
   for (const std::string& warning : run.startWarnings()) sink.warning(warning);
 
+  const auto frameAt = [&](long number) {
+    integration.start();
+    try {
+      return run.frameAt(number, frameTime(scene, number), note);
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::unstable) endContacts(contacts, sink);  // the frames so far may be kept
+      throw;
+    }
+  };
+  if (sink.contact) run.tellContacts();
   for (long number = 0; number <= lastFrame(scene); ++number) {
     sign.beginFrame();
-    integration.start();
-    Frame frame = run.frameAt(number, frameTime(scene, number), note);
+    Frame frame = frameAt(number);
     integration.stop();
     for (const Event& event : run.takeEvents(frame.time)) {
       if (sink.contact) contacts.note(event);
@@ -101,10 +116,7 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
     sink.frame(frame);
   }
   run.finish();
-  if (sink.contact) {
-    contacts.finish();
-    tellOfContacts(contacts, sink);
-  }
+  endContacts(contacts, sink);
   tellOfPromises(run, sink);
   if (const auto warning = loss.warning(); warning && !run.hasLongSteps()) sink.warning(*warning);
   return {integration.seconds(), run.evaluations(), run.correctionCounts(),
@@ -116,16 +128,13 @@ Trajectory simulate(const Scene& scene) {
   World run(scene);
   Trajectory trajectory;
   trajectory.header = headerOf(scene, run.plan());
-  const SimulationSink sink{[&](const Frame& frame) { trajectory.frames.push_back(frame); },
-                            [&](const Event& event) { trajectory.events.push_back(event); },
-                            [](const std::string&) {},
-                            {},
-                            {},
-                            [&](const LastingContact& contact) {
-                              const auto id = static_cast<std::size_t>(contact.id);
-                              if (id == trajectory.contacts.size()) trajectory.contacts.emplace_back();
-                              trajectory.contacts[id] = contact;
-                            }};
+  SimulationSink sink{[&](const Frame& frame) { trajectory.frames.push_back(frame); },
+                      [&](const Event& event) { trajectory.events.push_back(event); }, [](const std::string&) {}};
+  sink.contact = [&](const LastingContact& contact) {
+    const auto id = static_cast<std::size_t>(contact.id);
+    if (id == trajectory.contacts.size()) trajectory.contacts.emplace_back();
+    trajectory.contacts[id] = contact;
+  };
   trajectory.cost = simulate(scene, run, sink);
   return trajectory;
 }

@@ -171,9 +171,8 @@ void SoftSubsteps::record() {
 }
 
 bool SoftSubsteps::isAwake(int sceneBody) const {
-  const auto found = std::ranges::lower_bound(assembly_.sceneBodies, sceneBody);
-  return found != assembly_.sceneBodies.end() && *found == sceneBody &&
-         !step_.isAsleep(static_cast<std::size_t>(found - assembly_.sceneBodies.begin()));
+  const int body = indexAmong(assembly_.sceneBodies, sceneBody);
+  return body != kFixed && !step_.isAsleep(static_cast<std::size_t>(body));
 }
 
 std::vector<ContactWrench> SoftSubsteps::contactWrenches() {
@@ -231,9 +230,9 @@ void SoftSubsteps::addLoad(const SoftContacts::Meeting& contact, const std::vect
     const auto at = static_cast<std::size_t>(i);
     const Vec3 point = center + worldFromA * manifold.onA[at].cast<double>();
     middle += point / load.points;
-    sum.add({a, b, point, load.forces[at] * normal, Vec3::Zero()});
+    sum.add({a, b, point, load.forces[at], load.forces[at] * normal, Vec3::Zero()});
   }
-  sum.add({a, b, middle, Vec3::Zero(), sign * load.frictionForce, load.twist * normal});
+  sum.add({a, b, middle, 0, Vec3::Zero(), sign * load.frictionForce, load.twist * normal});
 }
 
 std::vector<Event> SoftSubsteps::takeEvents() {

@@ -181,6 +181,10 @@ void World::takeFrom(Simulation& simulation, const VectorX& state, Frame& frame)
   events_.insert(events_.end(), events.begin(), events.end());
 }
 
+void World::tellContacts() {
+  for (const auto& group : groups_) group->tellContacts();
+}
+
 std::vector<ContactWrench> World::contactWrenches() {
   std::vector<ContactWrench> all;
   const auto add = [&all](const std::vector<ContactWrench>& wrenches) {

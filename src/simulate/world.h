@@ -40,6 +40,9 @@ class World {
   /// is told the mean of the islands' clocks (s) after each of their steps; it may be none.
   Frame frameAt(long number, double time, const std::function<void(double time)>& reached = {});
 
+  /// To be called before the first frame if contactWrenches is to be.
+  void tellContacts();
+
   /// What lasting contacts do in the last frame, ascending by bodies.
   std::vector<ContactWrench> contactWrenches();
 

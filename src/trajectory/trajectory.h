@@ -69,7 +69,7 @@ struct ContactWrench {
 
 /// Two bodies that press each other for a while.
 struct LastingContact {
-  long id = 0;                     // from 0, in the order of their begins
+  long id = 0;                     // from 0, in the order in which they were noticed
   int bodyA = 0, bodyB = 0;        // indices into TrajectoryHeader::bodies
   double begin = 0;                // s
   std::optional<double> end = {};  // s; none: not known yet

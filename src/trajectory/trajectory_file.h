@@ -68,7 +68,8 @@ class TrajectoryWriter {
   std::vector<std::string> bodyNames_, jointNames_;
   std::vector<int> movingBodies_;  // ids
   using ForceNumbers = std::array<double, 14>;
-  std::map<long, ForceNumbers> lastForces_;  // of each contact that has not ended: its last row
+  std::map<long, ForceNumbers> lastForces_;  // the last row of each contact that goes on
+  std::vector<LastingContact> ended_;        // since the last frame
   std::chrono::milliseconds commitInterval_;
   std::chrono::steady_clock::time_point lastCommit_;
   long framesAppended_ = 0, framesCommitted_ = 0;
@@ -98,7 +99,10 @@ class TrajectoryReader {
   Frame readFrame(long number) const;
   std::vector<Event> events() const;
 
-  /// By number. Empty in trajectories of earlier versions.
+  /// Whether it tells of contacts that last: earlier versions did not.
+  bool hasContacts() const;
+
+  /// By number.
   std::vector<LastingContact> contacts() const;
 
   /// What lasting contacts do at a frame, by their numbers. Amortised O(contacts) if frames are read in their order.
@@ -129,6 +133,7 @@ class TrajectoryReader {
   void readJoints();
   void readFrameTimes();
   void readJointStates(Frame& frame) const;
+  void readForcesUntil(long number) const;
 
   std::string path_;
   TrajectoryHeader header_;

@@ -438,10 +438,14 @@ void TrajectoryReader::readJointStates(Frame& frame) const {
   query.reset();
 }
 
+bool TrajectoryReader::hasContacts() const {
+  return countTables(*session_->database, kContactTableNames) == 2;
+}
+
 std::vector<LastingContact> TrajectoryReader::contacts() const {
   Database& database = *session_->database;
   std::vector<LastingContact> contacts;
-  if (countTables(database, kContactTableNames) < 2) return contacts;
+  if (!hasContacts()) return contacts;
   Statement query = database.prepare("SELECT id, a, b, begin, end FROM contact ORDER BY id");
   while (query.step()) {
     if (query.integer(0) != std::ssize(contacts)) database.failDamaged("a contact is missing");
@@ -478,42 +482,40 @@ std::vector<ContactWrench> TrajectoryReader::contactsAt(long number) const {
   Session::Forces& forces = session_->forces;
   if (!forces.contacts) forces.contacts = contacts();
   if (number < forces.nextFrame) forces = {std::move(forces.contacts), {}, 0};
-  Database& database = *session_->database;
-  if (!forces.contacts->empty()) {
-    Statement query = database.prepare(
-        "SELECT contact, fx, fy, fz, tx, ty, tz, x, y, z, nx, ny, nz, normal FROM contact_force WHERE frame BETWEEN ? "
-        "AND ?");
-    query.bind(1, forces.nextFrame);
-    query.bind(2, number);
-    while (query.step()) {
-      const std::int64_t id = query.integer(0);
-      if (id < 0 || id >= std::ssize(*forces.contacts))
-        database.failDamaged("a force of a contact is of one that is not there");
-      const LastingContact& contact = (*forces.contacts)[static_cast<std::size_t>(id)];
-      const ContactWrench wrench{contact.id,
-                                 contact.bodyA,
-                                 contact.bodyB,
-                                 vectorAt(query, 1),
-                                 query.real(13) * vectorAt(query, 10),
-                                 vectorAt(query, 4),
-                                 vectorAt(query, 7)};
-      for (const Vec3& vector : {wrench.force, wrench.normalForce, wrench.torque, wrench.point})
-        if (!(vector.norm() < kLargestNumber))
-          database.failDamaged(fmt::format("a force of contact {} is none that can be", id));
-      forces.latest[contact.id] = wrench;
-    }
-  }
+  if (!forces.contacts->empty()) readForcesUntil(number);
   forces.nextFrame = number + 1;
   const double time = frameTimes_[static_cast<std::size_t>(number)];
+  std::erase_if(forces.latest, [&](const auto& latest) {
+    return (*forces.contacts)[static_cast<std::size_t>(latest.first)].end.value_or(time) < time;
+  });
   std::vector<ContactWrench> now;
-  for (auto next = forces.latest.begin(); next != forces.latest.end();) {
-    const auto here = next++;
-    if ((*forces.contacts)[static_cast<std::size_t>(here->first)].end.value_or(time) < time)
-      forces.latest.erase(here);
-    else
-      now.push_back(here->second);
-  }
+  for (const auto& [id, wrench] : forces.latest)
+    if (!wrench.force.isZero(0)) now.push_back(wrench);
   return now;
+}
+
+/// Takes the rows of forces from the frame after the last one on up to a frame.
+void TrajectoryReader::readForcesUntil(long number) const {
+  Database& database = *session_->database;
+  Session::Forces& forces = session_->forces;
+  Statement query = database.prepare(
+      "SELECT contact, fx, fy, fz, tx, ty, tz, x, y, z, nx, ny, nz, normal FROM contact_force "
+      "WHERE frame BETWEEN ? AND ? ORDER BY frame");
+  query.bind(1, forces.nextFrame);
+  query.bind(2, number);
+  while (query.step()) {
+    const std::int64_t id = query.integer(0);
+    if (id < 0 || id >= std::ssize(*forces.contacts))
+      database.failDamaged("a force of a contact is of one that is not there");
+    const LastingContact& contact = (*forces.contacts)[static_cast<std::size_t>(id)];
+    const ContactWrench wrench{
+        contact.id,         contact.bodyA,     contact.bodyB, vectorAt(query, 1), query.real(13) * vectorAt(query, 10),
+        vectorAt(query, 4), vectorAt(query, 7)};
+    for (const Vec3& vector : {wrench.force, wrench.normalForce, wrench.torque, wrench.point})
+      if (!(vector.norm() < kLargestNumber))
+        database.failDamaged(fmt::format("a force of contact {} is none that can be", id));
+    forces.latest[contact.id] = wrench;
+  }
 }
 
 std::vector<Event> TrajectoryReader::events() const {

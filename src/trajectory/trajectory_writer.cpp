@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "core/error.h"
 #include "core/output_path.h"
@@ -318,17 +319,23 @@ void TrajectoryWriter::writeFrame(const Frame& frame) {
   }
 }
 
-/// A contact has a row where that differs from its last one.
+/// A contact has a row where that differs from its last one. One that has just ended, at the instant of a frame, has
+/// none of its forces there.
 void TrajectoryWriter::writeContacts(const Frame& frame) {
+  const auto write = [&](long contact, const ForceNumbers& numbers) {
+    session_->force.bind(1, frame.number);
+    session_->force.bind(2, contact);
+    bindNumbers(session_->force, 3, numbers);
+    session_->force.run();
+  };
+  for (const LastingContact& ended : std::exchange(ended_, {}))
+    if (lastForces_.erase(ended.id) > 0 && *ended.end >= frame.time) write(ended.id, ForceNumbers{});
   for (const ContactWrench& wrench : frame.contacts) {
     const ForceNumbers numbers = forceNumbers(wrench);
     const auto [last, isNew] = lastForces_.try_emplace(wrench.contact, numbers);
     if (!isNew && last->second == numbers) continue;
     last->second = numbers;
-    session_->force.bind(1, frame.number);
-    session_->force.bind(2, wrench.contact);
-    bindNumbers(session_->force, 3, numbers);
-    session_->force.run();
+    write(wrench.contact, numbers);
   }
 }
 
@@ -341,7 +348,7 @@ void TrajectoryWriter::append(const LastingContact& contact) {
   insert.bind(4, contact.begin);
   contact.end ? insert.bind(5, *contact.end) : insert.bindNull(5);
   insert.run();
-  if (contact.end) lastForces_.erase(contact.id);
+  if (contact.end) ended_.push_back(contact);
 }
 
 void TrajectoryWriter::append(const CameraPose& camera) {

@@ -134,6 +134,26 @@ TEST(LastingContacts, BeginWhereABallLandsAndEndWhereItIsLifted) {
   }
 }
 
+// Two balls far apart are islands in time of one group; each lands for itself.
+TEST(LastingContacts, BeginExactlyInIslandsOfAGroup) {
+  std::string balls;
+  for (const double height : {0.5, 0.3, 0.7})
+    balls += fmt::format(R"(, {{"name": "b{0}", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 2, "material": "m",
+      "position": [{1}, {2}, 0], "linearVelocity": [{3}, 0, 0]}})",
+                         height, 10 * height, height + 0.1, height == 0.5 ? 0 : 0.5 - height);
+  const Trajectory run = runOnGround(balls, 0.1, 0.1, R"("duration": 0.6)");
+  ASSERT_EQ(run.contacts.size(), 3u);
+  const double heights[] = {0.3, 0.5, 0.7};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(run.contacts[i].begin, std::sqrt(2 * heights[i] / kGravity), 1e-9);
+    EXPECT_EQ(*run.contacts[i].end, run.frames.back().time);
+  }
+  for (const Frame& frame : run.frames)
+    EXPECT_EQ(frame.contacts.size(),
+              static_cast<std::size_t>(std::ranges::count_if(
+                  run.contacts, [&](const auto& contact) { return contact.begin <= frame.time; })));
+}
+
 // In steps of one length the forces of a stack are the mean of those of the steps, and what rattles is no event.
 TEST(LastingContacts, OfStepsBalanceWeights) {
   const Trajectory run = runOnGround(box("a", {1, 1, 1}, 1, {0, 0.5, 0}) + box("b", {0.8, 0.8, 0.8}, 2, {0.05, 1.4, 0}),
@@ -162,6 +182,32 @@ TEST(LastingContacts, OfStepsChangeMomentumWithTheImpacts) {
     const double change = now.states[0].linearVelocity.y() - before.states[0].linearVelocity.y();
     const double force = onBody(now, 1, now.states[0]).force.y();
     EXPECT_NEAR(change, impulse + (force - kGravity) / 60, 1e-3 * kGravity / 60) << now.time;
+  }
+}
+
+// A box of 10 kg lies, and is struck by a ball: it has one contact with the ground all the time, which carries its
+// weight and, once it is awake, what the ball gives besides.
+TEST(LastingContacts, OfStepsGoOnWhereBodiesWake) {
+  const auto runAt = [](double framesPerSecond) {
+    return runOnGround(box("a", {1, 1, 1}, 10, {0, 0.5, 0}) +
+                           R"(, {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 0.1, "material": "m",
+                             "position": [0, 2, 0]})",
+                       0.5, 0.4,
+                       fmt::format(R"("duration": 0.7, "output": {{"framesPerSecond": {}}}, {})", framesPerSecond,
+                                   methodText("rk4", 1.0 / 480)));
+  };
+  const Trajectory run = runAt(85);
+  std::vector<LastingContact> ofBox;
+  std::ranges::copy_if(run.contacts, std::back_inserter(ofBox),
+                       [](const LastingContact& contact) { return contact.bodyA == 1 && contact.bodyB == 0; });
+  ASSERT_EQ(ofBox.size(), 1u);
+  EXPECT_EQ(ofBox[0].begin, 0);
+  EXPECT_EQ(*ofBox[0].end, run.frames.back().time);
+  for (const double framesPerSecond : {60.0, 200.0}) {
+    const Trajectory struck = runAt(framesPerSecond);
+    ASSERT_FALSE(eventsOf(struck, EventKind::wake).empty());
+    for (const Frame& frame : struck.frames)
+      EXPECT_GT(-wrenchOf(frame, 1, 0).force.y(), 0.999 * 10 * kGravity) << frame.time;
   }
 }
 
@@ -215,6 +261,28 @@ TEST(LastingContacts, OfHardSpheresCarryWhatLiesInAGroove) {
     EXPECT_LT((wrenchOf(frame, 2, 0).force + 2 * kGravity * half * Vec3(half, half, 0)).norm(), 1e-9);
     EXPECT_LT((wrenchOf(frame, 2, 1).force + 2 * kGravity * half * Vec3(-half, half, 0)).norm(), 1e-9);
     EXPECT_LT((wrenchOf(frame, 2, 0).point - Vec3(-0.1 * half, 0.1 * half, 0)).norm(), 1e-9);
+  }
+}
+
+// In a corner of three planes through one line, of which the steeper ones would have to pull: the floor carries all.
+TEST(LastingContacts, OfHardSpheresNeverPull) {
+  std::string bodies;
+  for (const double degrees : {0.0, 80.0, 85.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    bodies += fmt::format(R"({}{{"name": "p{}", "motion": "static", "material": "m", "position": [0, 0, 0],
+      "shape": {{"plane": {{"normal": [{}, {}, 0]}}}}}})",
+                          bodies.empty() ? "" : ", ", degrees, std::sin(angle), std::cos(angle));
+  }
+  const double side = 0.1 * std::tan(85 * std::numbers::pi / 360);  // where the ball touches floor and the last plane
+  const Trajectory run = simulate(sceneWith(fmt::format(
+      R"("duration": 0.2, "materials": {{"m": {{"restitution": 1, "staticFriction": 0, "dynamicFriction": 0}}}},
+      "bodies": [{}, {{"name": "lying", "material": "m", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 2,
+        "position": [{}, 0.1, 0]}}])",
+      bodies, side)));
+  EXPECT_EQ(run.header.method, "closed form between collisions");
+  for (const Frame& frame : run.frames) {
+    EXPECT_LT((wrenchOf(frame, 3, 0).force - Vec3(0, -2 * kGravity, 0)).norm(), 1e-9);
+    EXPECT_EQ(frame.contacts.size(), 1u);
   }
 }
 

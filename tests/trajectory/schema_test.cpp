@@ -207,6 +207,24 @@ TEST(TrajectorySchemaOfContacts, HasRowsWhereForcesChange) {
   }
 }
 
+// An event ends the contact just at frame 1.
+TEST(TrajectorySchemaOfContacts, HasNoForceWhereTheContactEndsAtAFrame) {
+  const TemporaryFolder folder;
+  TrajectoryWriter writer(folder.file("a.sqlite"), sampleHeader());
+  Frame frame = sampleFrame(0);
+  frame.contacts.push_back(sampleWrench(0, 1));
+  writer.append(LastingContact{0, 0, 1, 0});
+  writer.append(frame);
+  writer.append(LastingContact{0, 0, 1, 0, sampleFrame(1).time});
+  writer.append(sampleFrame(1));
+  writer.finish({});
+  EXPECT_EQ(rowsOf(folder.file("a.sqlite"), "SELECT frame, fx, normal FROM contact_force ORDER BY frame"),
+            (std::vector<std::string>{"0|1.0|2.0", "1|0.0|0.0"}));
+  const TrajectoryReader reader(folder.file("a.sqlite"));
+  EXPECT_EQ(reader.contactsAt(0).size(), 1u);
+  EXPECT_TRUE(reader.contactsAt(1).empty());
+}
+
 TEST_F(TrajectorySchema, HoldsCamerasAsTheyWereGiven) {
   TrajectoryWriter writer(folder_.file("b.sqlite"), sampleHeader());
   writer.append(sampleFrame(0));

@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/interruption.h"
+#include "impact/linear_complementarity.h"
 #include "simulate/contact_wrenches.h"
 #include "simulate/thresholds.h"
 
@@ -184,13 +185,13 @@ std::vector<ContactWrench> HardSpheres::contactWrenches() const {
       normals.col(i) = world_.planes[static_cast<std::size_t>(supports[static_cast<std::size_t>(i)])].normal;
     const Vec3 carried = (flights_.motionAt(sphere, time_).acceleration - world_.gravity) / world_.inverseMasses[index];
     const Vec3 center = centerOfMass(state_, sphere);
-    // Planes of which two suffice share by the least forces.
-    const VectorX forces = normals.completeOrthogonalDecomposition().solve(carried);
+    const VectorX forces = solveLinearComplementarity(normals.transpose() * normals, -normals.transpose() * carried);
     for (Eigen::Index i = 0; i < count; ++i) {
       const int plane = supports[static_cast<std::size_t>(i)];
       const Vec3 normal = normals.col(i);
-      sum.add({world_.sceneBodies[index], sceneBodyOf(~plane), center - world_.radii[index] * normal,
-               -forces[i] * normal, Vec3::Zero()});
+      if (forces[i] > 0)
+        sum.add({world_.sceneBodies[index], sceneBodyOf(~plane), center - world_.radii[index] * normal, forces[i],
+                 -forces[i] * normal, Vec3::Zero()});
     }
   }
   return sum.wrenches();

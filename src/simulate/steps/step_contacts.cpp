@@ -17,8 +17,7 @@ constexpr std::size_t kFewLoaded = 8;        // contacts that last: with more, t
 constexpr double kReach = 2;                 // of the displacement of free motion: what others may make of it
 constexpr double kRestingReachRatio = 1e-3;  // of its size: the same, for bodies at rest
 constexpr double kNearOverlap = 10;  // of the deepest overlap: contacts so near may come to overlap by the correction
-constexpr double kPartOfContact = 1.0 / 60;  // s of the lighter body's weight: less is no event where contact lasts
-constexpr int kMaxRemovals = 4;  // of overlaps in a step: each leaves about the square of the relative overlap
+constexpr int kMaxRemovals = 4;      // of overlaps in a step: each leaves about the square of the relative overlap
 
 double closingSpeed(const Contact& contact, const VectorX& state) {
   return -openingSpeed(contact, state);
@@ -196,13 +195,13 @@ bool StepContacts::hasImpact() const {
   return std::any_of(stepping_.contacts().begin(), stepping_.contacts().end(), isImpact);
 }
 
-/// Tells an impact as an event, unless its bodies pressed each other in the step before and it is less than
-/// kPartOfContact: that, and what is no impact, is a load of a contact that lasts.
+/// Tells an impact as an event, unless its bodies pressed each other in the step before and it is less than the
+/// lighter one's weight gives in kContactTime: that, and what is no impact, is a load of a contact that lasts.
 void StepContacts::record(double time, const Contact& contact, const Vec3& impulse, bool isImpact) {
   const ColliderPair& pair = assembly_.geometry.pairs[contact.pair];
   const std::pair bodies = bodiesOf(assembly_, pair);
   const double normalImpulse = contact.normal.dot(impulse);
-  const bool isSmall = normalImpulse <= kPartOfContact * lightest(contact) * assembly_.mechanism.gravity.norm();
+  const bool isSmall = normalImpulse <= kContactTime * lightest(contact) * assembly_.mechanism.gravity.norm();
   if (isImpact && !(isSmall && std::ranges::binary_search(pressedBefore_, bodies)))
     log_.recordContact(time, EventKind::impact, contact, normalImpulse);
   else

@@ -67,6 +67,10 @@ class StepContacts {
 
   const StepTolerances& tolerances() const { return stepping_.tolerances(); }
 
+  /// s: an impact of bodies that press each other already is part of their contact, if the lighter one's weight gives
+  /// as much in that time; forces of contacts have their mean over it, as those of single steps rattle.
+  static constexpr double kContactTime = 1.0 / 60;
+
  private:
   void findTouching(const VectorX& state, const std::function<double(int, int)>& marginOf,
                     std::vector<Contact>& touching);

@@ -43,6 +43,7 @@ SteppedMotion::SteppedMotion(IslandState& island, LimitEvents& ropes, const Chos
       guard_(island.assembly, island.state, method, island.scene.duration),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       windowStart_(island.time),
+      supportsOfStep_(island.resting.supports()),
       begin_(island.time) {
   for (const Collider& collider : island.assembly.geometry.colliders) innerRadii_.push_back(innerRadius(collider));
   countSteps();
@@ -68,6 +69,7 @@ void SteppedMotion::advance(double frame) {
 
   // How far do bodies move freely, until which event?
   tautRowsBefore_ = ropes_.tautRows();
+  supportsOfStep_ = island_.resting.supports();
   holdReachedTargets();
   moveFreely(stepEnd);
   before_ = island_.state;
@@ -87,7 +89,7 @@ void SteppedMotion::advance(double frame) {
   if (hasContacts_) contacts_.recordAndLetSleep(time, island_.state);
   if (hasContacts_) contactEnd_ = island_.state;
   if (atEvent || !contacts_.usesTimeSteppingOnly()) contacts_.resolveImpacts(time, before_, ropes_, island_.state);
-  keepLoads();
+  keepLoads(step.time);
   ropes_.resolve(time, island_.state);
   if (island_.makeChanges()) ropes_.resolve(time, island_.state);
   keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
@@ -100,30 +102,36 @@ void SteppedMotion::advance(double frame) {
   if (time >= static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
 }
 
-/// Keeps what contacts did in the step that has ended, and at its end; of a step without time with the next one.
-void SteppedMotion::keepLoads() {
-  const double begin = island_.step.time;
+/// Keeps what contacts did in the time since `begin` (s), and at its end; of a step without time with the next one.
+void SteppedMotion::keepLoads(double begin) {
   if (begin > island_.time - kTimeRounding * method_.timeStep) return;
   std::vector<ContactLoad> loads = contacts_.takeLoads();
-  if (!loads.empty()) loads_.push_back({begin, island_.time, std::move(loads)});
-  while (!loads_.empty() && loads_.front().end < island_.time - kMeanTime - method_.timeStep) loads_.pop_front();
+  if (!loads.empty() || !supportsOfStep_->empty())
+    loads_.push_back({begin, island_.time, std::move(loads), supportsOfStep_});
+  while (!loads_.empty() && loads_.front().end < island_.time - StepContacts::kContactTime - method_.timeStep)
+    loads_.pop_front();
 }
 
 void SteppedMotion::addMeanLoads(double time, WrenchSum& sum) const {
-  if (loads_.empty()) return;
-  const double from = std::max(time - kMeanTime, begin_);
-  const auto& bodies = island_.assembly.sceneBodies;
-  const auto moves = [&](int sceneBody) {
-    const auto found = std::lower_bound(bodies.begin(), bodies.end(), sceneBody);
-    return found != bodies.end() && *found == sceneBody &&
-           !island_.resting.isResting(static_cast<int>(found - bodies.begin()));
+  const auto loadsOf = [this](const SupportForce& support) {
+    return loadOf(support.contact, support.pair, support.force, island_.assembly);
+  };
+  const bool isInside = time < island_.time - kTimeRounding * method_.timeStep;
+  std::vector<std::pair<int, int>> atRest;  // scene bodies
+  for (const SupportForce& support : isInside ? *supportsOfStep_ : *island_.resting.supports()) {
+    sum.add(loadsOf(support));
+    atRest.push_back(bodiesOf(island_.assembly, support.pair));
+  }
+  std::ranges::sort(atRest);
+  const double from = std::max(time - StepContacts::kContactTime, begin_);
+  const auto add = [&](const ContactLoad& load, double fraction) {
+    if (!std::ranges::binary_search(atRest, std::pair(load.bodyA, load.bodyB))) sum.add(load, fraction);
   };
   for (const StepLoads& step : loads_) {
-    const double within = std::min(step.end, time) - std::max(step.begin, from);
-    if (within <= 0) continue;
-    const double perTime = within / ((step.end - step.begin) * (time - from));
-    for (const ContactLoad& load : step.loads)
-      if (moves(load.bodyA) || moves(load.bodyB)) sum.add(load, perTime);
+    const double share = (std::min(step.end, time) - std::max(step.begin, from)) / (time - from);
+    if (!(share > 0)) continue;
+    for (const ContactLoad& load : step.loads) add(load, share / (step.end - step.begin));
+    for (const SupportForce& support : *step.supports) add(loadsOf(support), share);
   }
 }
 
@@ -351,7 +359,10 @@ bool SteppedMotion::mayServeEvents() const {
 }
 
 void SteppedMotion::restUntil(double time) {
+  const double begin = island_.time;
   island_.time = std::min(time, island_.nextChange());
+  supportsOfStep_ = island_.resting.supports();
+  keepLoads(begin);
   countSteps();
   if (island_.makeChanges()) ropes_.resolve(island_.time, island_.state);
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <deque>
+#include <memory>
+#include <vector>
 
 #include "simulate/contact_wrenches.h"
 #include "simulate/energy_guard.h"
@@ -33,11 +35,8 @@ class SteppedMotion {
   /// Forces (N or N m) of the motors in the last step, the mean of those that hold against contacts.
   const VectorX& motorForces() const { return motorForces_; }
 
-  /// s: over which forces of contacts have their mean. Those of single steps rattle.
-  static constexpr double kMeanTime = 1.0 / 60;
-
-  /// Adds the mean forces of contacts of bodies that do not rest, over kMeanTime up to `time` (s), or since these steps
-  /// began; not those of impacts that were told as events.
+  /// Adds the mean forces of contacts over StepContacts::kContactTime up to `time` (s), or since these steps began; of
+  /// bodies that rest those that keep them still. Impacts that were told as events are left out.
   void addMeanLoads(double time, WrenchSum& sum) const;
 
   /// Whether all bodies of the island lie still.
@@ -66,7 +65,6 @@ class SteppedMotion {
   bool exhaustMotors();
   void shorten();
   void countEvent();
-  void keepLoads();
 
   IslandState& island_;
   LimitEvents& ropes_;
@@ -86,11 +84,15 @@ class SteppedMotion {
   VectorX contactEnd_;               // ... and led to this state
   VectorX motorForces_;
   std::vector<double> innerRadii_;  // m, of the colliders
+  using Supports = std::shared_ptr<const std::vector<SupportForce>>;
   struct StepLoads {
     double begin, end;               // s
     std::vector<ContactLoad> loads;  // impulses
+    Supports supports;               // of bodies at rest in the step
   };
-  std::deque<StepLoads> loads_;  // of the last steps that had any, by kMeanTime
+  void keepLoads(double begin);
+  Supports supportsOfStep_;
+  std::deque<StepLoads> loads_;  // of the last steps that had any, by kContactTime
   double begin_;                 // s, of the first step
 };
 
