@@ -194,7 +194,7 @@ TEST(TrajectorySchemaOfContacts, HasRowsWhereForcesChange) {
   ASSERT_EQ(reader.contacts().size(), 2u);
   EXPECT_FALSE(reader.contacts()[0].end);
   EXPECT_EQ(*reader.contacts()[1].end, sampleFrame(2).time);
-  for (const std::size_t number : {0, 1, 2, 3, 1, 0, 3}) {  // in any order
+  for (const std::size_t number : {0u, 1u, 2u, 3u, 1u, 0u, 3u}) {  // in any order
     const std::vector<ContactWrench> found = reader.contactsAt(static_cast<long>(number));
     ASSERT_EQ(found.size(), wrenches[number].size()) << number;
     for (std::size_t i = 0; i < found.size(); ++i) {
