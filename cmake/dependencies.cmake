@@ -9,6 +9,7 @@ find_package(Threads REQUIRED)
 find_package(PNG 1.6 REQUIRED)
 find_library(LIBDEFLATE deflate REQUIRED)
 find_package(OpenEXR 3.1 REQUIRED)
+find_library(LIBARCHIVE archive REQUIRED)
 if(CRADLE_TESTS OR NOT CRADLE_EGL)  # the tests hold one context against the other
   find_path(OSMESA_INCLUDE GL/osmesa.h REQUIRED)
 endif()

@@ -24,6 +24,7 @@
 #include "commands/pictures.h"
 #include "commands/plan_scene.h"
 #include "commands/plot_runs.h"
+#include "commands/sample_scenes.h"
 #include "commands/simulate_scene.h"
 #include "commands/study_scenes.h"
 #include "commands/verify_truth.h"
@@ -49,6 +50,7 @@ struct CommandLine {
   PictureOptions pictures;
   CompareOptions comparison;
   PlotOptions plot;
+  SampleOptions sampling;
   InspectOptions inspection;
   long frame = 0;
   bool json = false, quiet = false, sideBySide = false, exportsContacts = false;
@@ -244,6 +246,34 @@ void addPictures(CLI::App& app, CommandLine& line) {
   addPictureOptions(video, line);
 }
 
+void addSample(CLI::App& app, CommandLine& line) {
+  auto* sample =
+      addCommand(app, line, "sample", "Make scenes, trajectories and pictures of a scene with values to draw",
+                 "cradle sample scenes/dropped_shapes.json -n 100 --seed 1 -o set --simulate\n"
+                 "  cradle sample scenes/dropped_shapes.json -n 100 -o set --passes all --size 320x240 -j 2",
+                 [&] { sampleScenes(line.input, line.output, line.sampling, line.pictures, line.quiet); });
+  sample->add_option("scene", line.input, "scene file (JSON) with draws")->required();
+  addOutput(sample, line, "folder for sample_000000/scene.json, ..., and index.json");
+  sample->add_option("-n,--count", line.sampling.count, "number of samples")->capture_default_str();
+  sample->add_option("--seed", line.sampling.seed, "whole number; another one gives other samples")
+      ->capture_default_str();
+  sample->add_flag("--simulate", line.sampling.simulates, "write the trajectory of each sample");
+  sample->add_flag("--render", line.sampling.renders, "draw the frames of each sample, into its folder");
+  sample->add_option("--passes", line.pictures.passes, "draw these passes, as those of render; rgb is one of them");
+  sample->add_option("--pass-format", line.pictures.passFormat, "npy or exr, as that of render")->capture_default_str();
+  sample->add_option("--frames", line.pictures.frames, "FIRST:END, half-open: the frames to draw (default: all)");
+  sample->add_option("--shard", line.sampling.shard,
+                     "PART/PARTS: one of so many parts of the samples, from 1/PARTS on");
+  sample->add_option("-j,--processes", line.sampling.processes, "samples made beside each other")
+      ->capture_default_str();
+  sample
+      ->add_option(
+          "--format", line.sampling.format,
+          "folder; or tar: the samples are packed into samples.tar, in WebDataset's form, and their folders go")
+      ->capture_default_str();
+  addPictureOptions(sample, line);
+}
+
 void addQuestions(CLI::App& app, CommandLine& line) {
   auto* inspect = addCommand(app, line, "inspect", "Say what the objects of a mesh file are as bodies of density 1",
                              "cradle inspect assets/l_prism.3ds", [&] { inspectMesh(line.input, line.inspection); });
@@ -383,6 +413,7 @@ int run(int argc, char** argv) {
       "COMMAND', says more.");
   addSimulate(app, line);
   addPictures(app, line);
+  addSample(app, line);
   addPlot(app, line);
   addStudy(app, line);
   addQuestions(app, line);

@@ -17,13 +17,14 @@ MAY_INCLUDE = {
     "impact": ["core", "math", "mesh", "dynamics", "constraints", "collision"],
     "trajectory": ["core", "math", "mesh"],
     "simulate": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory"],
+    "sampling": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate"],
     "image": ["core"],
     "render": ["core", "math", "mesh", "scene", "trajectory", "image"],
     "overlay": ["core", "math", "mesh", "scene", "trajectory", "image", "render"],
     "truth": ["core", "math", "mesh", "scene", "trajectory", "render"],
     "verify": ["core", "math", "mesh", "scene", "trajectory"],
     "study": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "image"],
-    "commands": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "image", "render", "overlay", "truth", "verify", "study"],
+    "commands": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "sampling", "image", "render", "overlay", "truth", "verify", "study"],
 }
 # The one place of each library (Eigen and fmt are everywhere).
 LIBRARY_UNITS = {
@@ -34,6 +35,7 @@ LIBRARY_UNITS = {
     "sqlite3.h": ["trajectory/database"],
     "stb/": ["image/png", "image/font", "mesh/texture"],
     "libdeflate.h": ["image/png"],
+    "archive": ["commands/tar_shard"],
     "OpenEXR/": ["truth/pass_files", "verify/exr_reader"],
     "GL/": ["render"],
     "GL/osmesa.h": ["render/contexts/osmesa"],

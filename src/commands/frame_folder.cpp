@@ -16,8 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of a whole film. SQLite has a journal beside a trajectory that is being written.
-constexpr std::array<const char*, 5> kFilmFiles = {kCameraFile, kEventsFile, kOriginFile, kKeptTrajectory,
-                                                   "trajectory.sqlite.part-journal"};
+constexpr std::array<const char*, 7> kFilmFiles = {
+    kCameraFile, kEventsFile, kOriginFile, kKeptTrajectory, kSceneFile, kRecordFile, "trajectory.sqlite.part-journal"};
 
 std::string endingOf(const std::string& kind) {
   if (kind == kPictureKind) return ".png";
@@ -34,17 +34,6 @@ std::vector<std::string> allKinds() {
 /// A name without what marks an unfinished file.
 std::string finishedName(const std::string& name) {
   return name.ends_with(".part") ? name.substr(0, name.size() - 5) : name;
-}
-
-/// The file that a name, or that of one that is being written, stands for; nothing for other names.
-std::optional<FrameFile> parseFrameFile(const std::string& name) {
-  const std::string whole = finishedName(name);
-  const std::size_t digits = whole.rfind('_') + 1;
-  if (whole.find_first_not_of("0123456789", digits) != digits + 6 || digits == 0) return std::nullopt;
-  const FrameFile file{whole.substr(0, digits - 1), std::stol(whole.substr(digits, 6))};
-  const std::vector<std::string> kinds = allKinds();
-  const bool isOurs = std::find(kinds.begin(), kinds.end(), file.kind) != kinds.end() && whole == frameFileName(file);
-  return isOurs ? std::optional(file) : std::nullopt;
 }
 
 bool isOurs(const std::string& name) {
@@ -72,6 +61,16 @@ std::vector<FrameFile> filesIn(const std::string& folder, const FrameRange& rang
 
 std::string frameFileName(const FrameFile& file) {
   return fmt::format("{}_{:06}{}", file.kind, file.frame, endingOf(file.kind));
+}
+
+std::optional<FrameFile> parseFrameFile(const std::string& name) {
+  const std::string whole = finishedName(name);
+  const std::size_t digits = whole.rfind('_') + 1;
+  if (whole.find_first_not_of("0123456789", digits) != digits + 6 || digits == 0) return std::nullopt;
+  const FrameFile file{whole.substr(0, digits - 1), std::stol(whole.substr(digits, 6))};
+  const std::vector<std::string> kinds = allKinds();
+  const bool isKnown = std::find(kinds.begin(), kinds.end(), file.kind) != kinds.end() && whole == frameFileName(file);
+  return isKnown ? std::optional(file) : std::nullopt;
 }
 
 void requireFramesAlone(const std::string& folder) {

@@ -17,6 +17,9 @@ inline constexpr const char* kCameraFile = "camera.json";
 inline constexpr const char* kEventsFile = "events.json";
 inline constexpr const char* kOriginFile = "truth.json";
 inline constexpr const char* kKeptTrajectory = "trajectory.sqlite";
+// Of a sample of a data set, whose pictures stand in its folder: its scene, and what is known of it.
+inline constexpr const char* kSceneFile = "scene.json";
+inline constexpr const char* kRecordFile = "sample.json";
 
 /// A file of one frame: a picture, a pass by its name, or what goes with passes.
 struct FrameFile {
@@ -26,6 +29,9 @@ struct FrameFile {
 
 /// KIND_000000.png of pictures, .json of instances, .exr of passes in one file, else .npy.
 std::string frameFileName(const FrameFile& file);
+
+/// The file that a name, or that of one that is being written, stands for; nothing for other names.
+std::optional<FrameFile> parseFrameFile(const std::string& name);
 
 struct FrameRange {
   long first, end;  // half-open

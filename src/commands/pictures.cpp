@@ -12,6 +12,7 @@
 #include "commands/film_drawer.h"
 #include "commands/frame_folder.h"
 #include "commands/number_pair.h"
+#include "commands/shard.h"
 #include "commands/truth_film.h"
 #include "core/error.h"
 #include "core/folder_lock.h"
@@ -73,18 +74,9 @@ void takeFolder(const std::string& folder, const std::optional<FrameRange>& rang
 /// The frames of one of several parts that are as long as each other, but for one frame.
 FrameRange shardOf(const FrameRange& range, const std::optional<std::string>& text) {
   if (!text) return range;
-  const auto shard = parsePair(*text, '/');
-  if (!shard || shard->first < 1 || shard->first > shard->second || shard->second > kMaxFrames)
-    throw Error(ErrorKind::usage, "--shard",
-                fmt::format("found \"{}\"; allowed is PART/PARTS with 1 <= PART <= PARTS, as 2/8", *text));
+  const Shard shard = parseShard(*text);
   const long count = range.end - range.first;
-  return {range.first + (shard->first - 1) * count / shard->second, range.first + shard->first * count / shard->second};
-}
-
-void writeFile(const fs::path& path, const std::string& bytes) {
-  PartFile file(path.string());
-  file.write(bytes);
-  file.complete();
+  return {range.first + shard.begin(count), range.first + shard.end(count)};
 }
 
 /// Writes a file that runs beside this one may be writing with the same bytes: it waits for them.
@@ -97,7 +89,7 @@ void writeShared(const fs::path& path, const std::string& bytes) {
         readFile(path.string(), bytes.size(), ErrorKind::output) == bytes)
       return;
     try {
-      return writeFile(path, bytes);
+      return writeWholeFile(path.string(), bytes);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::output || attempt == kAttempts) throw;
     }
@@ -160,8 +152,12 @@ void keepTrajectory(const TrajectoryReader& trajectory, const std::string& path)
 void writeOrigin(const TrajectorySource& source, const std::string& input, const fs::path& folder) {
   const TrajectoryReader& trajectory = source.reader();
   const bool isFile = isDatabaseFile(input);
+  const bool isInside =
+      isFile && fs::weakly_canonical(folder) == fs::weakly_canonical(fs::absolute(input)).parent_path();
   if (!isFile) keepTrajectory(trajectory, (folder / kKeptTrajectory).string());
-  const std::string name = isFile ? fs::absolute(input).lexically_normal().string() : kKeptTrajectory;
+  const std::string name = isInside ? fs::path(input).filename().string()
+                           : isFile ? fs::absolute(input).lexically_normal().string()
+                                    : kKeptTrajectory;
   writeShared(folder / kOriginFile,
               originJson(name, trajectory.isFinished() ? trajectory.stateHash() : trajectory.hashOfFrames()));
 }
@@ -240,7 +236,7 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
       [&](long frame, const FrameResult& result) {
         const std::string picture = frameFileName({kPictureKind, frame});
         if (result.picture) writePng(*result.picture, (fs::path(folder) / picture).string());
-        for (const FileBytes& file : result.truth) writeFile(fs::path(folder) / file.name, file.bytes);
+        for (const FileBytes& file : result.truth) writeWholeFile((fs::path(folder) / file.name).string(), file.bytes);
       });
 }
 

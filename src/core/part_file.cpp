@@ -35,4 +35,10 @@ void PartFile::flush() {
   waiting_.clear();
 }
 
+void writeWholeFile(const std::string& path, std::string_view bytes) {
+  PartFile file(path);
+  file.write(bytes);
+  file.complete();
+}
+
 }  // namespace cradle

@@ -24,4 +24,7 @@ class PartFile {
   PartLock lock_;
 };
 
+/// Puts a whole file there, or none. Throws Error(output).
+void writeWholeFile(const std::string& path, std::string_view bytes);
+
 }  // namespace cradle

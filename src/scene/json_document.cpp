@@ -237,6 +237,59 @@ void TextSurvey::count(std::size_t start, std::size_t end) {
 
 }  // namespace
 
+namespace {
+
+bool isLeaf(const JsonValue& value) {
+  return !std::holds_alternative<JsonValue::Array>(value.content) &&
+         !std::holds_alternative<JsonValue::Object>(value.content);
+}
+
+std::string textOfLeaf(const JsonValue& value) {
+  struct {
+    std::string operator()(std::nullptr_t) const { return "null"; }
+    std::string operator()(bool truth) const { return truth ? "true" : "false"; }
+    std::string operator()(double number) const { return fmt::format("{}", number); }
+    std::string operator()(const std::string& text) const { return nlohmann::json(text).dump(); }
+    std::string operator()(const JsonValue::Array&) const { return "[]"; }
+    std::string operator()(const JsonValue::Object&) const { return "{}"; }
+  } text;
+  return std::visit(text, value.content);
+}
+
+/// Appends a value whose lines after the first begin with `indent`.
+void appendValue(const JsonValue& value, const std::string& indent, std::string& text) {
+  const std::string inside = indent + "  ";
+  const auto* array = std::get_if<JsonValue::Array>(&value.content);
+  const auto* object = std::get_if<JsonValue::Object>(&value.content);
+  if (array != nullptr && std::all_of(array->begin(), array->end(), isLeaf)) {
+    text += '[';
+    for (const JsonValue& element : *array) text += (&element == array->data() ? "" : ", ") + textOfLeaf(element);
+    text += ']';
+  } else if (array != nullptr) {
+    for (const JsonValue& element : *array) {
+      text += (&element == array->data() ? "[\n" : ",\n") + inside;
+      appendValue(element, inside, text);
+    }
+    text += '\n' + indent + ']';
+  } else if (object != nullptr && !object->empty()) {
+    for (const JsonMember& member : *object) {
+      text += (&member == object->data() ? "{\n" : ",\n") + inside + nlohmann::json(member.key).dump() + ": ";
+      appendValue(member.value, inside, text);
+    }
+    text += '\n' + indent + '}';
+  } else {
+    text += textOfLeaf(value);
+  }
+}
+
+}  // namespace
+
+std::string writeJson(const JsonValue& value) {
+  std::string text;
+  appendValue(value, "", text);
+  return text + '\n';
+}
+
 JsonValue readJson(const std::string& text, FaultList& faults) {
   if (text.size() > kLongestText) {
     faults.add({}, "", fmt::format("the text has {} bytes; at most 64 MB are allowed", text.size()));

@@ -31,6 +31,10 @@ struct JsonMember {
 /// reading: throws Error(scene) with all faults so far. Numbers are finite.
 JsonValue readJson(const std::string& text, FaultList& faults);
 
+/// A text that readJson() reads as the same tree: numbers have the fewest digits that give them back (17 at most),
+/// arrays of no more than numbers and words stand on one line.
+std::string writeJson(const JsonValue& value);
+
 /// The largest text that is read, in bytes.
 constexpr std::size_t kLongestText = 64'000'000;
 

@@ -11,6 +11,7 @@
 #include "scene/attach_models.h"
 #include "scene/attach_textures.h"
 #include "scene/complete_links.h"
+#include "scene/draws.h"
 #include "scene/json_document.h"
 #include "scene/parse_bodies.h"
 #include "scene/parse_camera.h"
@@ -22,14 +23,6 @@
 
 namespace cradle {
 namespace {
-
-/// Of a scene file. A trajectory holds a scene, but is none.
-std::string textOf(const std::string& path) {
-  std::string text = readFile(path, kLongestText, ErrorKind::scene);
-  if (text.starts_with("SQLite format 3"))
-    throw Error(ErrorKind::scene, path, "is a trajectory or another database, not a scene file (JSON)");
-  return text;
-}
 
 namespace fs = std::filesystem;
 
@@ -74,6 +67,35 @@ SceneDraft parseText(const JsonValue& document, FaultList& faults) {
   return draft;
 }
 
+/// A scene with values to be drawn is many scenes.
+void refuseDraws(const JsonValue& document, FaultList& faults) {
+  const DrawPlace draw = firstDraw(document);
+  if (draw.value == nullptr) return;
+  checkDraws(document, faults);
+  faults.add(draw.value->place, draw.pointer,
+             "a value that is to be drawn, where one is needed; make scenes of this one with `cradle sample SCENE -n "
+             "10 --seed 1 -o FOLDER`");
+  faults.throwIfAny();
+}
+
+LoadedScene parsed(const JsonValue& document, const std::string& path, const ModelSource& models,
+                   const TextureSource& textures, FaultList& textFaults) {
+  FaultList meshFaults(path, ErrorKind::mesh);
+  SceneDraft draft = parseText(document, textFaults);
+  textFaults.throwIfAny();
+
+  attachTextures(draft, textures, textFaults, meshFaults);
+  attachModels(draft, models, textFaults, meshFaults);
+  completeLinks(draft, textFaults);
+  if (textFaults.count() + meshFaults.count() == 0) completePushes(draft, textFaults);
+  textFaults.throwIfAny();
+  meshFaults.throwIfAny();
+
+  collectLinks(draft);
+  draft.scene.path = path;
+  return {std::move(draft.scene), textFaults.warnings()};
+}
+
 }  // namespace
 
 std::string modelName(const MeshReference& reference) {
@@ -102,26 +124,31 @@ TextureSource textureFilesBeside(const std::string& scenePath, const std::string
 
 LoadedScene parseScene(const std::string& text, const std::string& path, const ModelSource& models,
                        const TextureSource& textures) {
-  FaultList textFaults(path, ErrorKind::scene), meshFaults(path, ErrorKind::mesh);
-  const JsonValue document = readJson(text, textFaults);
-  SceneDraft draft = parseText(document, textFaults);
-  textFaults.throwIfAny();
+  FaultList faults(path, ErrorKind::scene);
+  const JsonValue document = readJson(text, faults);
+  refuseDraws(document, faults);
+  LoadedScene loaded = parsed(document, path, models, textures, faults);
+  loaded.scene.text = text;
+  return loaded;
+}
 
-  attachTextures(draft, textures, textFaults, meshFaults);
-  attachModels(draft, models, textFaults, meshFaults);
-  completeLinks(draft, textFaults);
-  if (textFaults.count() + meshFaults.count() == 0) completePushes(draft, textFaults);
-  textFaults.throwIfAny();
-  meshFaults.throwIfAny();
+LoadedScene parseScene(const JsonValue& document, const std::string& path, const ModelSource& models,
+                       const TextureSource& textures) {
+  FaultList faults(path, ErrorKind::scene);
+  LoadedScene loaded = parsed(document, path, models, textures, faults);
+  loaded.scene.text = writeJson(document);
+  return loaded;
+}
 
-  collectLinks(draft);
-  draft.scene.path = path;
-  draft.scene.text = text;
-  return {std::move(draft.scene), textFaults.warnings()};
+std::string readSceneText(const std::string& path) {
+  std::string text = readFile(path, kLongestText, ErrorKind::scene);
+  if (text.starts_with("SQLite format 3"))  // a trajectory holds a scene, but is none
+    throw Error(ErrorKind::scene, path, "is a trajectory or another database, not a scene file (JSON)");
+  return text;
 }
 
 LoadedScene loadScene(const std::string& path, const std::string& assetRoot) {
-  return parseScene(textOf(path), path, modelFilesBeside(path, assetRoot), textureFilesBeside(path, assetRoot));
+  return parseScene(readSceneText(path), path, modelFilesBeside(path, assetRoot), textureFilesBeside(path, assetRoot));
 }
 
 }  // namespace cradle

@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "scene/json_document.h"
 #include "scene/scene.h"
 
 namespace cradle {
@@ -32,6 +33,9 @@ struct LoadedScene {
   std::vector<std::string> warnings;  // "FILE:LINE:COLUMN /json/pointer: ..."
 };
 
+/// The text of a scene file. Throws Error(scene) if it cannot be read, or is none.
+std::string readSceneText(const std::string& path);
+
 /// Reads a scene file and the meshes that it names. Throws Error(scene) with every fault of the text (at most 50, one a
 /// line: "FILE:LINE:COLUMN /json/pointer: what was found; what is allowed; hint"), else Error(mesh) with every mesh
 /// that cannot be used. Meshes are looked at only if the text has no faults; the faults of the text that only they can
@@ -41,5 +45,9 @@ LoadedScene loadScene(const std::string& path, const std::string& assetRoot = ""
 /// The same for a text that is already in memory; `path` is for messages.
 LoadedScene parseScene(const std::string& text, const std::string& path, const ModelSource& models,
                        const TextureSource& textures = readTexture);
+
+/// The same for a tree in which draws were made; its places are those of the text with the draws.
+LoadedScene parseScene(const JsonValue& document, const std::string& path, const ModelSource& models,
+                       const TextureSource& textures);
 
 }  // namespace cradle

@@ -199,6 +199,7 @@ void parseBody(const Field& field, SceneDraft& scene, FaultList& faults) {
   BodyDraft draft;
   draft.field = field;
   draft.body.where = faults.where(field.place(), field.pointer);
+  draft.body.entry = static_cast<int>(scene.bodies.size());
   ObjectReader reader(field, faults);
   parseName(reader, draft);
   parseCategory(reader, draft);

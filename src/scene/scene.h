@@ -61,6 +61,7 @@ enum class Motion { dynamic, fixed, driven };
 struct Body {
   std::string name;
   std::string where;              // place in the scene file, for messages: "FILE:LINE:COLUMN /bodies/0"
+  int entry = 0;                  // index into `bodies` of the scene file; that of all its copies
   std::string category = "body";  // what kind of thing it is, for those who learn from pictures
   int material = 0;               // index into Scene::materials
   bool namesMaterial = false;

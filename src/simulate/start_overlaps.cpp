@@ -217,6 +217,17 @@ void correctPenetrations(const Scene& scene, Assembly& assembly, std::vector<std
 
 }  // namespace
 
+std::vector<std::pair<int, int>> bodiesInEachOther(const Scene& scene) {
+  std::vector<std::pair<int, int>> pairs;
+  const Body* const first = scene.bodies.data();
+  for (const IslandPlan& island : planOf(scene).islands) {
+    if (island.touching.empty()) continue;
+    for (const StartOverlap& overlap : overlapsOf(scene, assemble(scene, island), kMaxFaultsCounted))
+      pairs.emplace_back(static_cast<int>(&overlap.a - first), static_cast<int>(&overlap.b - first));
+  }
+  return pairs;
+}
+
 void correctStartPenetrations(const Scene& scene, std::vector<Assembly>& islands) {
   std::vector<std::string> faults;
   for (Assembly& assembly : islands)

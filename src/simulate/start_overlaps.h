@@ -1,5 +1,8 @@
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "simulate/assembly.h"
 
 namespace cradle {
@@ -10,5 +13,9 @@ namespace cradle {
 /// radius of a sphere inside the smaller body, or which cannot be moved apart, one a line (at most 50); overlaps that
 /// would take long to mend are refused too. O(pairs), ended early by a thousand faults.
 void correctStartPenetrations(const Scene& scene, std::vector<Assembly>& islands);
+
+/// Pairs of scene bodies that overlap at the start by more than touching, of those that may touch at all. The scene
+/// must have passed refuseUnsupported.
+std::vector<std::pair<int, int>> bodiesInEachOther(const Scene& scene);
 
 }  // namespace cradle

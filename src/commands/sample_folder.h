@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/draws.h"
+
+// A data set is a folder of samples, sample_000000, ..., each with its scene and what was made of it, and an index.
+
+namespace cradle {
+
+inline constexpr const char* kIndexFile = "index.json";
+
+constexpr long kMaxSamples = 1'000'000;  // that folder names have digits for
+
+/// sample_000017
+std::string sampleName(long number);
+
+/// What is known of a sample, kept as sample.json in its folder once all of it is there.
+struct SampleRecord {
+  long number = 0;
+  std::uint64_t seed = 0;
+  std::string sceneHash;  // of the text of its scene.json
+  int redrawn = 0;        // times that a body was drawn again, for it overlapped others
+  std::vector<DrawnValue> draws;
+  std::string stateHash;               // of its trajectory; empty without one
+  std::string pictures;                // which were drawn, and how; empty without any
+  std::optional<std::string> failure;  // of its simulation
+  std::optional<std::string> tar;      // the file in the data set that it was packed into
+};
+
+void writeRecord(const SampleRecord& record, const std::string& folder);
+
+/// Nothing if there is none in the folder that can be read.
+std::optional<SampleRecord> readRecord(const std::string& folder);
+
+/// Refuses, with Error(output), a folder with others' files.
+void requireSamplesAlone(const std::string& folder);
+
+/// Lists in index.json the samples that are in a data set, and those that it lists and that were packed. Runs beside
+/// each other may do so: the index of the last one lists all.
+void writeIndex(const std::string& folder, const std::string& scenePath, const std::vector<SampleRecord>& packed);
+
+}  // namespace cradle
