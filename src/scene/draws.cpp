@@ -238,7 +238,8 @@ JsonValue Drawing::made(const JsonValue& value, std::string& pointer) {
 JsonValue Drawing::madeDocument(const JsonValue& document) {
   JsonValue result = document;
   auto* members = std::get_if<JsonValue::Object>(&result.content);
-  if (members == nullptr) return result;
+  std::string root;
+  if (members == nullptr) return made(document, root);
   for (JsonMember& member : *members) {
     origins_ = member.key == "bodies" ? &bodyOrigins : nullptr;
     std::string inside = pointerTo("", member.key);

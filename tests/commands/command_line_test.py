@@ -54,9 +54,104 @@ class InTemporaryFolder(unittest.TestCase):
         return result
 
 
+class Samples(InTemporaryFolder):
+    DROPPED = {"name": "box", "shape": {"box": {"size": [0.2, 0.1, 0.3]}},
+               "position": {"draw": {"uniform": [[-1, 0.5, -1], [1, 1, 1]]}}, "orientation": {"draw": "rotation"},
+               "linearVelocity": [{"draw": {"normal": [0, 1]}}, 0, 0]}
+    GROUND = {"name": "ground", "shape": {"plane": {}}, "motion": "static"}
+
+    def drawn(self, **changes):
+        return self.write("drawn.json", scene(**{"bodies": [self.GROUND, self.DROPPED], **changes}))
+
+    def index(self, folder):
+        return json.loads(content(os.path.join(self.path(folder), "index.json")))["samples"]
+
+    def test_a_scene_with_draws_is_none_without_the_sampler(self):
+        self.refuses(3, ["/bodies/1/position", "cradle sample"], "simulate", self.drawn(), "-o", self.path("a.sqlite"))
+
+    def test_samples_are_ordinary_scenes_with_the_bits_of_their_trajectories(self):
+        result = cradle("sample", self.drawn(), "-n", "3", "--seed", "5", "-o", self.path("set"), "--simulate", "-q")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for sample in self.index("set"):
+            folder = os.path.join(self.path("set"), sample["folder"])
+            again = self.path("again.sqlite")
+            self.assertEqual(cradle("simulate", os.path.join(folder, "scene.json"), "-o", again).returncode, 0)
+            self.assertEqual(cradle("compare", os.path.join(folder, "trajectory.sqlite"), again).returncode, 0)
+            database = sqlite3.connect(again)
+            (state_hash,) = database.execute("select value from meta where key = 'stateHash'").fetchone()
+            database.close()
+            self.assertEqual(sample["stateHash"], state_hash)
+
+    def test_shards_and_processes_give_the_samples_of_one_run(self):
+        cradle("sample", self.drawn(), "-n", "5", "-o", self.path("one"), "--simulate")
+        for shard in ("2/2", "1/2"):
+            result = cradle("sample", self.drawn(), "-n", "5", "-o", self.path("parts"), "--simulate", "--shard", shard, "-j", "2")
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.index("one"), self.index("parts"))
+        self.assertEqual([sample["sample"] for sample in self.index("one")], list(range(5)))
+
+    def test_whole_samples_stay_and_unfinished_ones_are_made_again(self):
+        arguments = ("sample", self.drawn(), "-o", self.path("set"), "--simulate", "-n")
+        cradle(*arguments, "2")
+        before = self.index("set")
+        kept = os.path.join(self.path("set"), "sample_000000", "trajectory.sqlite")
+        os.remove(os.path.join(self.path("set"), "sample_000001", "sample.json"))  # as a kill leaves it
+        os.remove(os.path.join(self.path("set"), "sample_000001", "trajectory.sqlite"))
+        stamp = os.stat(kept).st_mtime_ns
+        cradle(*arguments, "3")
+        self.assertEqual(self.index("set")[:2], before)
+        self.assertEqual(os.stat(kept).st_mtime_ns, stamp)
+
+    def test_pictures_and_passes_of_samples_verify(self):
+        result = cradle("sample", self.drawn(), "-o", self.path("set"), "--passes", "all", "--frames", "0:2")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        folder = os.path.join(self.path("set"), "sample_000000")
+        self.assertIn("frame_000001.png", os.listdir(folder))
+        self.assertEqual(cradle("verify", folder).returncode, 0)
+
+    def test_tar_files_have_frames_of_one_key_together(self):
+        import tarfile
+        for name in ("set", "again"):
+            result = cradle("sample", self.drawn(), "-n", "2", "-o", self.path(name), "--passes", "rgb,depth", "--frames", "0:2", "--format", "tar")
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(sorted(os.listdir(self.path("set"))), ["index.json", "samples.tar"])
+        self.assertEqual([sample["tar"] for sample in self.index("set")], ["samples.tar"] * 2)
+        with tarfile.open(os.path.join(self.path("set"), "samples.tar")) as tar:
+            names = tar.getnames()
+        self.assertIn("sample_000001_000000.rgb.png", names)
+        self.assertIn("sample_000001_000001.depth.npy", names)
+        self.assertIn("sample_000000.scene.json", names)
+        keys = [name.split(".")[0] for name in names]
+        self.assertEqual(len(set(keys)), sum(a != b for a, b in zip(keys, [None, *keys])))  # each stands in one place
+        self.refuses(5, ["samples.tar"], "sample", self.drawn(), "-n", "2", "-o", self.path("set"), "--format", "tar")
+
+    def test_a_sample_that_becomes_unstable_costs_none_of_the_others(self):
+        stiff = {"bodies": [{"name": "bob", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}], "duration": 2,
+                 "method": {"name": "explicitEuler", "timeStep": 0.01},
+                 "springs": [{"bodyA": "bob", "anchorB": [0, 1, 0], "restLength": 0.5,
+                              "stiffness": {"draw": {"choice": [1, 1e8]}}}]}
+        result = cradle("sample", self.drawn(**stiff), "-n", "8", "-o", self.path("set"), "--simulate")
+        self.assertEqual(result.returncode, 7, result.stderr)
+        samples = self.index("set")
+        self.assertEqual(len(samples), 8)
+        for sample in samples:
+            self.assertEqual("failure" in sample, sample["draws"]["/springs/0/stiffness"] == 1e8)
+            self.assertEqual("stateHash" in sample, sample["draws"]["/springs/0/stiffness"] == 1)
+
+    def test_others_files_and_numbers_out_of_range_are_refused(self):
+        path = self.drawn()
+        os.mkdir(self.path("theirs"))
+        self.write("theirs/notes.txt", "theirs")
+        self.refuses(5, ["notes.txt"], "sample", path, "-o", self.path("theirs"))
+        self.refuses(2, ["-n", "1 to 1000000"], "sample", path, "-n", "0", "-o", self.path("set"))
+        self.refuses(2, ["--shard", "PART/PARTS"], "sample", path, "--shard", "3/2", "-o", self.path("set"))
+        self.refuses(2, ["--format", "folder and tar"], "sample", path, "--format", "zip", "-o", self.path("set"))
+        self.refuses(2, ["-j"], "sample", path, "-j", "0", "-o", self.path("set"))
+
+
 class Usage(InTemporaryFolder):
     def test_help_of_every_command_has_an_example(self):
-        for command in ("simulate", "render", "verify", "encode", "video", "inspect", "check", "compare", "export", "plot", "study", "stability"):
+        for command in ("simulate", "render", "verify", "encode", "video", "inspect", "check", "compare", "export", "plot", "study", "stability", "sample"):
             result = cradle(command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Example:\n  cradle " + command, result.stdout)
