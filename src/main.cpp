@@ -249,8 +249,8 @@ void addPictures(CLI::App& app, CommandLine& line) {
 void addSample(CLI::App& app, CommandLine& line) {
   auto* sample =
       addCommand(app, line, "sample", "Make scenes, trajectories and pictures of a scene with values to draw",
-                 "cradle sample scenes/dropped_shapes.json -n 100 --seed 1 -o set --simulate\n"
-                 "  cradle sample scenes/dropped_shapes.json -n 100 -o set --passes all --size 320x240 -j 2",
+                 "cradle sample distributions/dropped_shapes.json -n 100 --seed 1 -o set --simulate\n"
+                 "  cradle sample distributions/dropped_shapes.json -n 100 -o set --passes all --size 320x240 -j 2",
                  [&] { sampleScenes(line.input, line.output, line.sampling, line.pictures, line.quiet); });
   sample->add_option("scene", line.input, "scene file (JSON) with draws")->required();
   addOutput(sample, line, "folder for sample_000000/scene.json, ..., and index.json");
