@@ -121,21 +121,11 @@ void copyTrajectory(const TrajectoryReader& trajectory, const std::string& path)
   writer.finish(trajectory.cost());
 }
 
-/// Whether a whole trajectory with these states is at `path`; one that is damaged is none.
-bool holdsStates(const std::string& path, const std::string& stateHash) {
-  if (!isTrajectoryFile(path)) return false;
-  try {
-    return TrajectoryReader(path).stateHash() == stateHash;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
 /// Keeps a simulated trajectory in the folder, once: a run beside this one may be writing it, and then it is waited
 /// for.
 void keepTrajectory(const TrajectoryReader& trajectory, const std::string& path) {
   constexpr std::chrono::milliseconds kPause(20);
-  const auto isThere = [&] { return holdsStates(path, trajectory.stateHash()); };
+  const auto isThere = [&] { return stateHashOf(path) == trajectory.stateHash(); };
   while (!isThere()) {
     throwIfInterrupted();
     try {

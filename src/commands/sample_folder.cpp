@@ -22,42 +22,32 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSamplePrefix = "sample_";
-constexpr std::uint64_t kMaxIndex = 4'000'000'000;  // bytes
 
 JsonValue jsonOf(decltype(JsonValue::content) content) {
   return {{}, std::move(content)};
 }
 
-JsonMember memberOf(const std::string& key, decltype(JsonValue::content) content) {
+JsonMember member(const std::string& key, decltype(JsonValue::content) content) {
   return {key, {}, jsonOf(std::move(content))};
 }
 
 JsonValue jsonOf(const SampleRecord& record) {
   JsonValue::Object draws;
   for (const DrawnValue& draw : record.draws) draws.push_back({draw.pointer, {}, draw.value});
-  JsonValue::Object object = {
-      memberOf("sample", double(record.number)),   memberOf("folder", sampleName(record.number)),
-      memberOf("seed", double(record.seed)),       memberOf("sceneHash", record.sceneHash),
-      memberOf("redrawn", double(record.redrawn)), memberOf("draws", std::move(draws))};
-  if (!record.stateHash.empty()) object.push_back(memberOf("stateHash", record.stateHash));
-  if (!record.pictures.empty()) object.push_back(memberOf("pictures", record.pictures));
-  if (record.failure) object.push_back(memberOf("failure", *record.failure));
-  if (record.tar) object.push_back(memberOf("tar", *record.tar));
+  JsonValue::Object object = {member("sample", double(record.number)),   member("folder", sampleName(record.number)),
+                              member("seed", double(record.seed)),       member("sceneHash", record.sceneHash),
+                              member("redrawn", double(record.redrawn)), member("draws", std::move(draws))};
+  if (!record.stateHash.empty()) object.push_back(member("stateHash", record.stateHash));
+  if (!record.pictures.empty()) object.push_back(member("pictures", record.pictures));
+  if (record.failure) object.push_back(member("failure", *record.failure));
+  if (record.tar) object.push_back(member("tar", *record.tar));
   return jsonOf(std::move(object));
-}
-
-const JsonValue* find(const JsonValue& object, const std::string& key) {
-  const auto* members = std::get_if<JsonValue::Object>(&object.content);
-  if (members == nullptr) return nullptr;
-  const auto found =
-      std::find_if(members->begin(), members->end(), [&](const JsonMember& member) { return member.key == key; });
-  return found == members->end() ? nullptr : &found->value;
 }
 
 /// Nothing if there is no such member, or one of another type.
 template <class T>
 const T* find(const JsonValue& object, const std::string& key) {
-  const JsonValue* value = find(object, key);
+  const JsonValue* value = memberOf(object, key);
   return value == nullptr ? nullptr : std::get_if<T>(&value->content);
 }
 
@@ -89,7 +79,7 @@ std::optional<JsonValue> readTree(const fs::path& path) {
   if (!fs::exists(path, missing)) return std::nullopt;
   try {
     FaultList faults(path.string(), ErrorKind::output);
-    JsonValue tree = readJson(readFile(path.string(), kMaxIndex, ErrorKind::output), faults);
+    JsonValue tree = readJson(readFile(path.string(), kLongestText, ErrorKind::output), faults);
     return faults.count() == 0 ? std::optional(std::move(tree)) : std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
@@ -107,10 +97,19 @@ bool isOurs(const std::string& name) {
   return isSampleName(name) || whole == kIndexFile || (whole.starts_with("samples") && whole.ends_with(".tar"));
 }
 
+bool holdsTar(const std::string& folder) {
+  const fs::directory_iterator files(folder);
+  return std::any_of(begin(files), end(files), [](const auto& file) { return file.path().extension() == ".tar"; });
+}
+
 /// All samples that are in a data set or were packed, by their numbers.
 std::map<long, SampleRecord> samplesOf(const std::string& folder, const std::vector<SampleRecord>& packed) {
   std::map<long, SampleRecord> samples;
-  const auto index = readTree(fs::path(folder) / kIndexFile);
+  const fs::path indexPath = fs::path(folder) / kIndexFile;
+  const auto index = readTree(indexPath);
+  if (!index && fs::exists(indexPath) && holdsTar(folder))
+    throw Error(ErrorKind::output, indexPath.string(),
+                "cannot be read, and lists samples that were packed; move it away to have one of the others");
   const auto* listed = index ? find<JsonValue::Array>(*index, "samples") : nullptr;
   if (listed != nullptr)
     for (const JsonValue& entry : *listed)
@@ -145,18 +144,20 @@ void writeIndex(const std::string& folder, const std::string& scenePath, const s
   constexpr int kAttempts = 1500;
   constexpr std::chrono::milliseconds kPause(20);  // half a minute in all
   for (int attempt = 1;; ++attempt) {
+    std::optional<PartFile> file;
     try {
-      PartFile file((fs::path(folder) / kIndexFile).string());  // from here on no other run writes it
-      JsonValue::Array entries;
-      for (const auto& [number, record] : samplesOf(folder, packed)) entries.push_back(jsonOf(record));
-      const JsonValue::Object index = {memberOf("scene", scenePath), memberOf("samples", std::move(entries))};
-      file.write(writeJson(jsonOf(index)));
-      return file.complete();
+      file.emplace((fs::path(folder) / kIndexFile).string());  // from here on no other run writes it
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::output || attempt == kAttempts) throw;
+      throwIfInterrupted();
+      std::this_thread::sleep_for(kPause);
+      continue;
     }
-    throwIfInterrupted();
-    std::this_thread::sleep_for(kPause);
+    JsonValue::Array entries;
+    for (const auto& [number, record] : samplesOf(folder, packed)) entries.push_back(jsonOf(record));
+    const JsonValue::Object index = {member("scene", scenePath), member("samples", std::move(entries))};
+    file->write(writeJson(jsonOf(index)));
+    return file->complete();
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <thread>
 #include <vector>
 
 #include "commands/frame_folder.h"
@@ -12,16 +11,17 @@
 #include "commands/shard.h"
 #include "commands/simulate_scene.h"
 #include "commands/tar_shard.h"
+#include "commands/trajectory_source.h"
 #include "core/error.h"
 #include "core/folder_lock.h"
 #include "core/output_path.h"
 #include "core/part_file.h"
+#include "core/part_lock.h"
 #include "core/progress.h"
 #include "core/read_file.h"
 #include "core/worker_processes.h"
 #include "sampling/scene_sampler.h"
 #include "trajectory/state_hash.h"
-#include "trajectory/trajectory_file.h"
 
 namespace cradle {
 namespace {
@@ -56,26 +56,39 @@ std::string describedPictures(const SampleOptions& options, const PictureOptions
   return text;
 }
 
-/// Removes what an earlier run of another scene, or one that was ended, left of a sample.
-void clearSample(const fs::path& folder) {
+/// Removes the files that a run which was ended left of a sample, with which options nobody knows; a trajectory of the
+/// same scene stays. Throws Error(output) where another run fills the folder, or where others' files are.
+void clearUnfinished(const fs::path& folder, bool keepsTrajectory) {
   requireFramesAlone(folder.string());
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) fs::remove(entry.path());
+  const FolderLock lock(folder.string(), FolderUse::alone);
+  if (!keepsTrajectory) requireNoWriter(partPath((folder / kKeptTrajectory).string()));
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  for (const fs::path& file : files) {
+    const std::string name = file.filename().string();
+    if (!keepsTrajectory || (name != kSceneFile && !name.starts_with(kKeptTrajectory))) fs::remove(file);
+  }
+}
+
+/// A whole sample is never replaced by another one.
+void requireSame(const SampleRecord& found, const SampleRecord& wanted, const std::string& folder) {
+  if (found.sceneHash != wanted.sceneHash || found.seed != wanted.seed)
+    throw Error(
+        ErrorKind::output, folder,
+        fmt::format(
+            "holds a sample of another scene or seed ({}), and is not replaced; name a new folder, or remove it",
+            found.seed));
+  if (!found.pictures.empty() && !wanted.pictures.empty() && found.pictures != wanted.pictures)
+    throw Error(ErrorKind::output, folder,
+                fmt::format("has pictures of another kind ({}; asked are {}), which are not replaced; name a new "
+                            "folder, or remove it",
+                            found.pictures, wanted.pictures));
 }
 
 bool holdsText(const fs::path& path, const std::string& text) {
   std::error_code missing;
   return fs::file_size(path, missing) == text.size() && !missing &&
          readFile(path.string(), text.size(), ErrorKind::output) == text;
-}
-
-/// The hash of a whole trajectory's states; empty if there is none, or only a part.
-std::string stateHashOf(const std::string& path) {
-  if (!isTrajectoryFile(path)) return "";
-  try {
-    return TrajectoryReader(path).stateHash();
-  } catch (const Error&) {
-    return "";
-  }
 }
 
 /// Makes the samples of one scene with draws.
@@ -101,9 +114,8 @@ class DataSet {
 };
 
 bool DataSet::isWhole(const SampleRecord& found, const SampleRecord& wanted) const {
-  const bool isSame = found.sceneHash == wanted.sceneHash && found.seed == wanted.seed;
-  const bool hasStates = !options_.simulates || !found.stateHash.empty() || found.failure;
-  return isSame && hasStates && (found.failure || wanted.pictures.empty() || found.pictures == wanted.pictures);
+  if (found.failure) return true;
+  return (!options_.simulates || !found.stateHash.empty()) && (wanted.pictures.empty() || !found.pictures.empty());
 }
 
 void DataSet::simulate(const fs::path& folder, SampleRecord& record) const {
@@ -122,9 +134,7 @@ void DataSet::simulate(const fs::path& folder, SampleRecord& record) const {
 }
 
 void DataSet::render(const fs::path& folder) const {
-  PictureOptions pictures = pictures_;
-  pictures.skipExisting = true;
-  renderFrames((folder / kKeptTrajectory).string(), folder.string(), pictures, true);
+  renderFrames((folder / kKeptTrajectory).string(), folder.string(), pictures_, true);
 }
 
 void DataSet::make(long number) const {
@@ -136,12 +146,12 @@ void DataSet::make(long number) const {
   record.redrawn = drawn.redrawn, record.draws = drawn.values;
   record.pictures = describedPictures(options_, pictures_);
   const auto found = readRecord(folder.string());
+  if (found) requireSame(*found, record, folder.string());
   if (found && isWhole(*found, record)) return;
   makeFolder(folder.string());
-  const bool goesOn =
-      holdsText(folder / kSceneFile, text) && (!found || found->pictures == record.pictures || found->pictures.empty());
-  if (!goesOn) clearSample(folder);
-  if (!goesOn) writeWholeFile((folder / kSceneFile).string(), text);
+  const bool hasScene = holdsText(folder / kSceneFile, text);
+  if (!found) clearUnfinished(folder, hasScene);
+  if (!hasScene) writeWholeFile((folder / kSceneFile).string(), text);
   if (options_.simulates) simulate(folder, record);
   if (record.failure)
     record.pictures.clear();

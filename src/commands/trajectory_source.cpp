@@ -78,6 +78,15 @@ Scene sceneOf(const TrajectoryReader& trajectory) {
   return scene;
 }
 
+std::string stateHashOf(const std::string& path) {
+  if (!isTrajectoryFile(path)) return "";
+  try {
+    return TrajectoryReader(path).stateHash();
+  } catch (const Error&) {
+    return "";
+  }
+}
+
 TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const SceneOptions& options)
     : quiet_(quiet) {
   if (isDatabaseFile(sceneOrTrajectory)) {

@@ -17,6 +17,9 @@ namespace cradle {
 /// or has other bodies than the file.
 Scene sceneOf(const TrajectoryReader& trajectory);
 
+/// The hash of the states of a whole trajectory file; empty if there is none that can be read, or only a part.
+std::string stateHashOf(const std::string& path);
+
 /// The trajectory that a command draws: a file; or a scene to be simulated, into a file without a name that goes with
 /// the object, or beside the drawing.
 class TrajectorySource {

@@ -1,6 +1,6 @@
 // Processes rather than threads: OpenGL's contexts on the CPU, the memory of a run and a crash stay apart. The next
-// number lies in memory that all share; what a process has done, and how it failed, comes through one pipe, in messages
-// that are short enough to be written whole (pipe(7), PIPE_BUF).
+// number lies in memory that all share; processes tell how far they are, and how they failed, through one pipe, in
+// messages that are short enough to be written whole (pipe(7), PIPE_BUF).
 
 #include "core/worker_processes.h"
 

@@ -1,5 +1,5 @@
 // Bodies are put into a scene one after the other, each drawn until it is in none that is there (random sequential
-// addition): what is drawn for a body depends on the bodies before it in the file, never on those behind.
+// addition): the draws of a body depend on the bodies before it in the file, never on those behind.
 
 #include "sampling/scene_sampler.h"
 
@@ -74,14 +74,6 @@ std::optional<EntryInOthers> firstInOthers(const DrawnScene& drawn) {
               fmt::format("is in another body in each of {} draws, in the last \"{}\" in \"{}\"; draw from a larger "
                           "space, or take fewer or smaller bodies",
                           kMaxAttempts, crowded.a->name, crowded.b->name));
-}
-
-JsonValue* memberOf(JsonValue& value, const std::string& key) {
-  auto* object = std::get_if<JsonValue::Object>(&value.content);
-  if (object == nullptr) return nullptr;
-  const auto found =
-      std::find_if(object->begin(), object->end(), [&](const JsonMember& member) { return member.key == key; });
-  return found == object->end() ? nullptr : &found->value;
 }
 
 /// Lets a path that starts from one folder start from another one.

@@ -23,14 +23,6 @@ namespace {
 constexpr const char* kDrawKey = "draw";
 constexpr const char* kMaterials = "/materials";  // whose keys are names: "draw" is one like others there
 
-const JsonValue* memberOf(const JsonValue& value, const std::string& key) {
-  const auto* object = std::get_if<JsonValue::Object>(&value.content);
-  if (object == nullptr) return nullptr;
-  const auto found =
-      std::find_if(object->begin(), object->end(), [&](const JsonMember& member) { return member.key == key; });
-  return found == object->end() ? nullptr : &found->value;
-}
-
 bool isDraw(const JsonValue& value, const std::string& pointer) {
   return pointer != kMaterials && memberOf(value, kDrawKey) != nullptr;
 }

@@ -11,7 +11,7 @@
 // Values of a scene file that are drawn: {"draw": {"uniform": [low, high]}}, {"draw": {"normal": [mean, deviation]}},
 // both of numbers or of arrays of them, {"draw": {"choice": [...]}} of values that may have draws in them, and
 // {"draw": "rotation"}, uniform over all orientations. They are replaced in the tree, before anything is read from it:
-// what takes their places stands where they stood, for messages. An element of an array that is drawn as null is left
+// drawn values stand where their draws stood, for messages. An element of an array that is drawn as null is left
 // out.
 
 namespace cradle {

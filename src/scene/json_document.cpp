@@ -12,6 +12,7 @@
 #include <optional>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 #include "scene/syntax_fault.h"
 #include "scene/token_cursor.h"
@@ -283,6 +284,18 @@ void appendValue(const JsonValue& value, const std::string& indent, std::string&
 }
 
 }  // namespace
+
+const JsonValue* memberOf(const JsonValue& value, const std::string& key) {
+  const auto* object = std::get_if<JsonValue::Object>(&value.content);
+  if (object == nullptr) return nullptr;
+  const auto found =
+      std::find_if(object->begin(), object->end(), [&](const JsonMember& member) { return member.key == key; });
+  return found == object->end() ? nullptr : &found->value;
+}
+
+JsonValue* memberOf(JsonValue& value, const std::string& key) {
+  return const_cast<JsonValue*>(memberOf(std::as_const(value), key));
+}
 
 std::string writeJson(const JsonValue& value) {
   std::string text;

@@ -26,6 +26,10 @@ struct JsonMember {
   JsonValue value;
 };
 
+/// The member of an object with that key; null if there is none, or the value is no object.
+const JsonValue* memberOf(const JsonValue& value, const std::string& key);
+JsonValue* memberOf(JsonValue& value, const std::string& key);
+
 /// Reads a JSON text; // and /* */ comments and a byte order mark are allowed. Duplicate keys are added to `faults`
 /// (the first one is kept). A text that is no JSON, nests deeper than 64 levels or is longer than 64 MB ends the
 /// reading: throws Error(scene) with all faults so far. Numbers are finite.

@@ -102,6 +102,39 @@ class Samples(InTemporaryFolder):
         self.assertEqual(self.index("set")[:2], before)
         self.assertEqual(os.stat(kept).st_mtime_ns, stamp)
 
+    def test_whole_samples_are_not_replaced_by_others(self):
+        arguments = ("sample", self.drawn(), "-o", self.path("set"), "-n", "2")
+        cradle(*arguments, "--seed", "1", "--render", "--frames", "0:1", "--size", "64x36")
+        before = content(self.path("set/sample_000001/scene.json"))
+        self.refuses(5, ["sample_000000", "another scene or seed (1)"], *arguments, "--seed", "2")
+        self.refuses(5, ["sample_000000", "size 64x36"], *arguments, "--render", "--frames", "0:1", "--size", "32x18")
+        self.assertEqual(content(self.path("set/sample_000001/scene.json")), before)
+
+    def test_pictures_of_an_ended_run_with_other_options_do_not_stay(self):
+        arguments = ("sample", self.drawn(), "-o", self.path("set"), "--render", "--frames")
+        cradle(*arguments, "0:3")
+        states = content(self.path("set/sample_000000/trajectory.sqlite"))
+        os.remove(self.path("set/sample_000000/sample.json"))  # as a kill leaves it
+        self.assertEqual(cradle(*arguments, "0:1", "--size", "32x18").returncode, 0)
+        self.assertEqual([name for name in os.listdir(self.path("set/sample_000000")) if name.startswith("frame")], ["frame_000000.png"])
+        self.assertEqual(content(self.path("set/sample_000000/trajectory.sqlite")), states)
+
+    def test_a_killed_data_set_goes_on_with_the_same_bits_and_leaves_no_process(self):
+        arguments = ("sample", self.drawn(), "-n", "6", "--render", "--frames", "0:4", "-o")
+        self.assertEqual(cradle(*arguments, self.path("one")).returncode, 0)
+        with subprocess.Popen([PROGRAM, *arguments, self.path("set"), "-j", "2"], stderr=subprocess.PIPE) as run:
+            while not os.path.exists(self.path("set/sample_000001")):
+                time.sleep(0.01)
+            run.kill()
+            run.stderr.read()  # ends when its processes have
+        self.assertFalse(os.path.exists(self.path("set/index.json")))
+        self.assertEqual(cradle(*arguments, self.path("set"), "-j", "2").returncode, 0)
+        self.assertEqual(self.index("set"), self.index("one"))
+        for number in range(6):
+            for frame in range(4):
+                name = f"sample_{number:06}/frame_{frame:06}.png"
+                self.assertEqual(content(self.path("set/" + name)), content(self.path("one/" + name)))
+
     def test_pictures_and_passes_of_samples_verify(self):
         result = cradle("sample", self.drawn(), "-o", self.path("set"), "--passes", "all", "--frames", "0:2")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -116,8 +149,12 @@ class Samples(InTemporaryFolder):
             self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(sorted(os.listdir(self.path("set"))), ["index.json", "samples.tar"])
         self.assertEqual([sample["tar"] for sample in self.index("set")], ["samples.tar"] * 2)
-        with tarfile.open(os.path.join(self.path("set"), "samples.tar")) as tar:
+        with tarfile.open(self.path("set/samples.tar")) as tar, tarfile.open(self.path("again/samples.tar")) as again:
             names = tar.getnames()
+            self.assertEqual(again.getnames(), names)
+            for name in names:
+                if not name.endswith(".sqlite"):  # which tells its CPU time
+                    self.assertEqual(tar.extractfile(name).read(), again.extractfile(name).read(), name)
         self.assertIn("sample_000001_000000.rgb.png", names)
         self.assertIn("sample_000001_000001.depth.npy", names)
         self.assertIn("sample_000000.scene.json", names)
