@@ -250,7 +250,8 @@ void addSample(CLI::App& app, CommandLine& line) {
   auto* sample =
       addCommand(app, line, "sample", "Make scenes, trajectories and pictures of a scene with values to draw",
                  "cradle sample distributions/dropped_shapes.json -n 100 --seed 1 -o set --simulate\n"
-                 "  cradle sample distributions/dropped_shapes.json -n 100 -o set --passes all --size 320x240 -j 2",
+                 "  cradle sample distributions/dropped_shapes.json -n 100 -o set --passes all --size 320x240 -j 2\n"
+                 "  cradle sample distributions/two_dice.json -n 400 --chains 4 -j 2 -o sixes --simulate",
                  [&] { sampleScenes(line.input, line.output, line.sampling, line.pictures, line.quiet); });
   sample->add_option("scene", line.input, "scene file (JSON) with draws")->required();
   addOutput(sample, line, "folder for sample_000000/scene.json, ..., and index.json");
@@ -263,8 +264,10 @@ void addSample(CLI::App& app, CommandLine& line) {
   sample->add_option("--pass-format", line.pictures.passFormat, "npy or exr, as that of render")->capture_default_str();
   sample->add_option("--frames", line.pictures.frames, "FIRST:END, half-open: the frames to draw (default: all)");
   sample->add_option("--shard", line.sampling.shard,
-                     "PART/PARTS: one of so many parts of the samples, from 1/PARTS on");
-  sample->add_option("-j,--processes", line.sampling.processes, "samples made beside each other")
+                     "PART/PARTS: one of so many parts of the samples, or of the chains, from 1/PARTS on");
+  sample->add_option("--chains", line.sampling.chains,
+                     "Markov chains for the wishes of the scene, of which each state is a sample");
+  sample->add_option("-j,--processes", line.sampling.processes, "samples, or chains, made beside each other")
       ->capture_default_str();
   sample
       ->add_option(

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <thread>
@@ -14,6 +15,7 @@
 #include "core/output_path.h"
 #include "core/part_file.h"
 #include "core/read_file.h"
+#include "sampling/metropolis_chain.h"
 #include "scene/json_document.h"
 
 namespace cradle {
@@ -31,7 +33,42 @@ JsonMember member(const std::string& key, decltype(JsonValue::content) content) 
   return {key, {}, jsonOf(std::move(content))};
 }
 
-JsonValue jsonOf(const SampleRecord& record) {
+/// JSON has no infinities: null.
+JsonValue finiteOrNull(double number) {
+  return std::isfinite(number) ? jsonOf(number) : jsonOf(nullptr);
+}
+
+JsonValue jsonOf(const std::vector<WishOutcome>& wishes) {
+  JsonValue::Array outcomes;
+  for (const WishOutcome& wish : wishes)
+    outcomes.push_back(
+        jsonOf(JsonValue::Object{{"distance", {}, finiteOrNull(wish.distance)}, member("met", wish.isMet)}));
+  return jsonOf(std::move(outcomes));
+}
+
+JsonValue jsonOf(const ChainRecord& chain, bool withNumbers) {
+  JsonValue::Object object = {member("number", double(chain.chain)), member("iteration", double(chain.iteration)),
+                              member("accepted", chain.isAccepted), member("sameAs", double(chain.sameAs))};
+  object.push_back({"logLikelihood", {}, finiteOrNull(chain.logLikelihood)});
+  if (!withNumbers) return jsonOf(std::move(object));
+  JsonValue::Object numbers;
+  for (const auto& [place, ofPlace] : chain.numbers) {
+    JsonValue::Array values;
+    for (const double number : ofPlace) values.push_back(jsonOf(number));
+    numbers.push_back({place, {}, jsonOf(std::move(values))});
+  }
+  object.push_back(member("numbers", std::move(numbers)));
+  return jsonOf(std::move(object));
+}
+
+JsonValue jsonOf(const ChainSummary& chain) {
+  return jsonOf(JsonValue::Object{
+      member("number", double(chain.chain)), member("samples", double(chain.samples)),
+      member("accepted", double(chain.accepted)), member("autocorrelationTime", chain.autocorrelationTime),
+      member("effectiveSamples", chain.effectiveSamples()), member("met", double(chain.met))});
+}
+
+JsonValue jsonOf(const SampleRecord& record, bool withNumbers) {
   JsonValue::Object draws;
   for (const DrawnValue& draw : record.draws) draws.push_back({draw.pointer, {}, draw.value});
   JsonValue::Object object = {member("sample", double(record.number)),   member("folder", sampleName(record.number)),
@@ -41,6 +78,8 @@ JsonValue jsonOf(const SampleRecord& record) {
   if (!record.pictures.empty()) object.push_back(member("pictures", record.pictures));
   if (record.failure) object.push_back(member("failure", *record.failure));
   if (record.tar) object.push_back(member("tar", *record.tar));
+  if (!record.wishes.empty()) object.push_back({"wishes", {}, jsonOf(record.wishes)});
+  if (record.chain) object.push_back({"chain", {}, jsonOf(*record.chain, withNumbers)});
   return jsonOf(std::move(object));
 }
 
@@ -54,6 +93,81 @@ const T* find(const JsonValue& object, const std::string& key) {
 std::optional<std::string> textAt(const JsonValue& object, const std::string& key) {
   const auto* text = find<std::string>(object, key);
   return text == nullptr ? std::nullopt : std::optional(*text);
+}
+
+std::vector<WishOutcome> outcomesAt(const JsonValue& json) {
+  std::vector<WishOutcome> outcomes;
+  const auto* wishes = find<JsonValue::Array>(json, "wishes");
+  if (wishes == nullptr) return outcomes;
+  for (const JsonValue& wish : *wishes) {
+    const auto* distance = find<double>(wish, "distance");
+    const auto* isMet = find<bool>(wish, "met");
+    outcomes.push_back({distance ? *distance : INFINITY, isMet && *isMet});
+  }
+  return outcomes;
+}
+
+UniformNumbers numbersAt(const JsonValue& json) {
+  UniformNumbers numbers;
+  const auto* places = find<JsonValue::Object>(json, "numbers");
+  if (places == nullptr) return numbers;
+  for (const JsonMember& place : *places)
+    if (const auto* values = std::get_if<JsonValue::Array>(&place.value.content))
+      for (const JsonValue& value : *values)
+        if (const auto* number = std::get_if<double>(&value.content)) numbers[place.key].push_back(*number);
+  return numbers;
+}
+
+std::optional<ChainRecord> chainOf(const JsonValue& json) {
+  const auto *number = find<double>(json, "number"), *iteration = find<double>(json, "iteration"),
+             *sameAs = find<double>(json, "sameAs");
+  const auto* isAccepted = find<bool>(json, "accepted");
+  if (!number || !iteration || !sameAs || !isAccepted) return std::nullopt;
+  const auto* logLikelihood = find<double>(json, "logLikelihood");
+  return ChainRecord{static_cast<long>(*number),
+                     static_cast<long>(*iteration),
+                     *isAccepted,
+                     static_cast<long>(*sameAs),
+                     logLikelihood ? *logLikelihood : -INFINITY,
+                     numbersAt(json)};
+}
+
+std::optional<ChainSummary> summaryOf(const JsonValue& json) {
+  const auto *number = find<double>(json, "number"), *samples = find<double>(json, "samples"),
+             *accepted = find<double>(json, "accepted"), *time = find<double>(json, "autocorrelationTime"),
+             *met = find<double>(json, "met");
+  if (!number || !samples || !accepted || !time || !met) return std::nullopt;
+  return ChainSummary{static_cast<long>(*number), static_cast<long>(*samples), static_cast<long>(*accepted),
+                      static_cast<long>(*met), *time};
+}
+
+/// The numbers that all states of a chain have, and their likelihoods: a series of each.
+std::vector<std::vector<double>> seriesOf(const std::vector<const SampleRecord*>& chain) {
+  std::map<std::pair<std::string, std::size_t>, std::vector<double>> numbers;
+  std::vector<double> likelihoods;
+  for (const SampleRecord* record : chain) {
+    likelihoods.push_back(record->chain->logLikelihood);
+    for (const auto& [place, ofPlace] : record->chain->numbers)
+      for (std::size_t i = 0; i < ofPlace.size(); ++i) numbers[{place, i}].push_back(ofPlace[i]);
+  }
+  std::vector<std::vector<double>> series;
+  if (std::all_of(likelihoods.begin(), likelihoods.end(), [](double value) { return std::isfinite(value); }))
+    series.push_back(std::move(likelihoods));
+  for (auto& [place, values] : numbers)
+    if (values.size() == chain.size()) series.push_back(std::move(values));
+  return series;
+}
+
+ChainSummary summaryOf(long number, const std::vector<const SampleRecord*>& chain) {
+  ChainSummary summary;
+  summary.chain = number, summary.samples = static_cast<long>(chain.size());
+  for (const SampleRecord* record : chain) {
+    if (record->chain->isAccepted && record->chain->iteration > 0) ++summary.accepted;
+    if (!record->wishes.empty() && areAllMet(record->wishes)) ++summary.met;
+  }
+  for (const std::vector<double>& series : seriesOf(chain))
+    summary.autocorrelationTime = std::max(summary.autocorrelationTime, autocorrelationTime(series));
+  return summary;
 }
 
 std::optional<SampleRecord> recordOf(const JsonValue& json) {
@@ -70,6 +184,8 @@ std::optional<SampleRecord> recordOf(const JsonValue& json) {
   record.pictures = textAt(json, "pictures").value_or("");
   record.failure = textAt(json, "failure");
   record.tar = textAt(json, "tar");
+  record.wishes = outcomesAt(json);
+  if (const JsonValue* chain = memberOf(json, "chain")) record.chain = chainOf(*chain);
   return record;
 }
 
@@ -102,9 +218,16 @@ bool holdsTar(const std::string& folder) {
   return std::any_of(begin(files), end(files), [](const auto& file) { return file.path().extension() == ".tar"; });
 }
 
-/// All samples that are in a data set or were packed, by their numbers.
-std::map<long, SampleRecord> samplesOf(const std::string& folder, const std::vector<SampleRecord>& packed) {
+/// What an index lists.
+struct Listed {
   std::map<long, SampleRecord> samples;
+  std::map<long, ChainSummary> chains;
+};
+
+/// All samples that are in a data set or were packed, by their numbers, and their chains.
+Listed listedOf(const std::string& folder, const std::vector<SampleRecord>& packed) {
+  Listed all;
+  std::map<long, SampleRecord>& samples = all.samples;
   const fs::path indexPath = fs::path(folder) / kIndexFile;
   const auto index = readTree(indexPath);
   if (!index && fs::exists(indexPath) && holdsTar(folder))
@@ -118,7 +241,14 @@ std::map<long, SampleRecord> samplesOf(const std::string& folder, const std::vec
     if (isSampleName(entry.path().filename().string()))
       if (auto record = readRecord(entry.path().string())) samples.insert_or_assign(record->number, *record);
   for (const SampleRecord& record : packed) samples.insert_or_assign(record.number, record);
-  return samples;
+  const auto* chains = index ? find<JsonValue::Array>(*index, "chains") : nullptr;
+  if (chains != nullptr)
+    for (const JsonValue& entry : *chains)
+      if (const auto summary = summaryOf(entry)) all.chains.insert_or_assign(summary->chain, *summary);
+  std::vector<SampleRecord> records;
+  for (const auto& [number, record] : samples) records.push_back(record);
+  for (const ChainSummary& summary : summariesOf(records)) all.chains.insert_or_assign(summary.chain, summary);
+  return all;
 }
 
 }  // namespace
@@ -127,8 +257,17 @@ std::string sampleName(long number) {
   return fmt::format("{}{:06}", kSamplePrefix, number);
 }
 
+std::vector<ChainSummary> summariesOf(const std::vector<SampleRecord>& records) {
+  std::map<long, std::vector<const SampleRecord*>> chains;
+  for (const SampleRecord& record : records)
+    if (record.chain && !record.chain->numbers.empty()) chains[record.chain->chain].push_back(&record);
+  std::vector<ChainSummary> summaries;
+  for (const auto& [number, chain] : chains) summaries.push_back(summaryOf(number, chain));
+  return summaries;
+}
+
 void writeRecord(const SampleRecord& record, const std::string& folder) {
-  writeWholeFile((fs::path(folder) / kRecordFile).string(), writeJson(jsonOf(record)));
+  writeWholeFile((fs::path(folder) / kRecordFile).string(), writeJson(jsonOf(record, true)));
 }
 
 std::optional<SampleRecord> readRecord(const std::string& folder) {
@@ -153,9 +292,12 @@ void writeIndex(const std::string& folder, const std::string& scenePath, const s
       std::this_thread::sleep_for(kPause);
       continue;
     }
-    JsonValue::Array entries;
-    for (const auto& [number, record] : samplesOf(folder, packed)) entries.push_back(jsonOf(record));
-    const JsonValue::Object index = {member("scene", scenePath), member("samples", std::move(entries))};
+    const Listed listed = listedOf(folder, packed);
+    JsonValue::Array samples, chains;
+    for (const auto& [number, record] : listed.samples) samples.push_back(jsonOf(record, false));
+    for (const auto& [number, summary] : listed.chains) chains.push_back(jsonOf(summary));
+    JsonValue::Object index = {member("scene", scenePath), member("samples", std::move(samples))};
+    if (!chains.empty()) index.push_back(member("chains", std::move(chains)));
     file->write(writeJson(jsonOf(index)));
     return file->complete();
   }

@@ -32,7 +32,7 @@ namespace {
 
 constexpr int kLookInterval = 100;  // ms: between looks at signals and at processes that ended
 
-/// What a process says: a number is done, or its error.
+/// What a process says: a part of its work is done, or its error.
 struct Message {
   static constexpr std::size_t kMaxText = 3000;
   int errorKind = 0;  // 0: done
@@ -67,14 +67,15 @@ void tell(int pipe, int errorKind, const std::string& text) {
   }
 }
 
-[[noreturn]] void workInChild(SharedCounter& counter, long count, const std::function<void(long)>& work, int pipe) {
+using Work = std::function<void(long number, const std::function<void()>& tell)>;
+
+[[noreturn]] void workInChild(SharedCounter& counter, long count, const Work& work, int pipe) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   int code = 0;
   try {
     for (long number; (number = counter.take()) < count;) {
       throwIfInterrupted();
-      work(number);
-      tell(pipe, 0, "");
+      work(number, [pipe] { tell(pipe, 0, ""); });
     }
   } catch (const Error& error) {
     code = static_cast<int>(error.kind());
@@ -161,13 +162,12 @@ void watch(Workers& workers, int pipe, const std::function<void(long)>& done) {
 
 }  // namespace
 
-void shareAmongProcesses(int processes, long count, const std::function<void(long)>& work,
-                         const std::function<void(long)>& done) {
+void shareAmongProcesses(int processes, long count, const Work& work, const std::function<void(long)>& done) {
   if (processes == 1 || count <= 1) {
+    long parts = 0;
     for (long number = 0; number < count; ++number) {
       throwIfInterrupted();
-      work(number);
-      done(number + 1);
+      work(number, [&] { done(++parts); });
     }
     return;
   }

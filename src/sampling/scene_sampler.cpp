@@ -98,9 +98,16 @@ SceneSampler::SceneSampler(const std::string& path, const std::string& assetRoot
 }
 
 DrawnScene SceneSampler::sceneOf(const UniformSource& uniform) const {
-  DrawnDocument made = drawn(document_, uniform);
+  UniformNumbers numbers;
+  const UniformSource recorded = [&](const std::string& pointer, std::size_t index) {
+    std::vector<double>& ofDraw = numbers[pointer];
+    ofDraw.resize(std::max(ofDraw.size(), index + 1));
+    return ofDraw[index] = uniform(pointer, index);
+  };
+  DrawnDocument made = drawn(document_, recorded);
   LoadedScene loaded = parseScene(made.document, path_, models_, textures_);
-  return {std::move(made.document), std::move(made.values), std::move(loaded), std::move(made.bodyOrigins)};
+  return {std::move(made.document), std::move(made.values), std::move(loaded), std::move(made.bodyOrigins), 0,
+          std::move(numbers)};
 }
 
 DrawnScene SceneSampler::sample(std::uint64_t seed, long number) const {
@@ -113,6 +120,13 @@ DrawnScene SceneSampler::sample(std::uint64_t seed, long number) const {
     if (!crowded) return scene;
     if (++attempts[scene.bodyOrigins[static_cast<std::size_t>(crowded->entry)]] == kMaxAttempts) refuseCrowd(*crowded);
   }
+}
+
+std::optional<DrawnScene> SceneSampler::possibleSceneOf(const UniformSource& uniform) const {
+  DrawnScene scene = sceneOf(uniform);
+  refuseUnsupported(scene.loaded.scene);
+  if (firstInOthers(scene)) return std::nullopt;
+  return scene;
 }
 
 std::string textInFolder(const DrawnScene& drawn, const std::string& scenePath, const std::string& folder) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct DrawnScene {
   LoadedScene loaded;
   std::vector<std::string> bodyOrigins;  // JSON pointer, in the file with draws, of each entry of `bodies`
   int redrawn = 0;                       // times that a body was drawn again, for it overlapped others
+  UniformNumbers numbers;                // that the draws were made with
 };
 
 /// A scene file with values to be drawn: a distribution of scenes.
@@ -32,6 +34,12 @@ class SceneSampler {
   /// drawn again until they do not, in the order of the file; those whose entries have no draws are there first. Throws
   /// Error(scene) where a body overlaps others in each of 1000 draws.
   DrawnScene sample(std::uint64_t seed, long number) const;
+
+  /// The scene of some numbers; none if bodies of entries with draws overlap others. Throws as sceneOf does.
+  std::optional<DrawnScene> possibleSceneOf(const UniformSource& uniform) const;
+
+  /// JSON pointers of all draws.
+  std::vector<std::string> places() const { return drawPlaces(document_); }
 
   const std::string& path() const { return path_; }
   const std::string& text() const { return text_; }

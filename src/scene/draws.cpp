@@ -258,6 +258,14 @@ DrawPlace firstDraw(const JsonValue& document) {
   return first;
 }
 
+std::vector<std::string> drawPlaces(const JsonValue& document) {
+  std::vector<std::string> places;
+  visitAll(document, "", [&](const JsonValue& value, const std::string& pointer) {
+    if (isDraw(value, pointer)) places.push_back(pointer);
+  });
+  return places;
+}
+
 DrawnDocument drawn(const JsonValue& document, const UniformSource& uniform) {
   Drawing drawing(uniform);
   JsonValue result = drawing.madeDocument(document);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,15 @@ struct DrawPlace {
 };
 DrawPlace firstDraw(const JsonValue& document);
 
+/// JSON pointers of all draws of a tree, in the order of the text, those inside of choices too.
+std::vector<std::string> drawPlaces(const JsonValue& document);
+
 /// A number in (0, 1), uniform: number `index` of those that the draw at `pointer` is made of. A number takes one, a
 /// choice one, a rotation three.
 using UniformSource = std::function<double(const std::string& pointer, std::size_t index)>;
+
+/// The numbers of all draws, by their pointers.
+using UniformNumbers = std::map<std::string, std::vector<double>>;
 
 struct DrawnValue {
   std::string pointer;  // of the draw

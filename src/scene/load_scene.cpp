@@ -20,6 +20,7 @@
 #include "scene/parse_materials.h"
 #include "scene/parse_pushes.h"
 #include "scene/parse_settings.h"
+#include "scene/parse_wishes.h"
 
 namespace cradle {
 namespace {
@@ -62,6 +63,7 @@ SceneDraft parseText(const JsonValue& document, FaultList& faults) {
   parsePushes(root, draft);
   parseCamera(root, draft);
   parseCaptions(root, draft);
+  parseWishes(root, draft);
   root.rejectUnknownKeys();
   completeLinks(draft, faults);
   return draft;

@@ -257,6 +257,32 @@ struct TitleCard {
   std::string titleWhere = {}, subtitleWhere = {};  // in the scene file
 };
 
+/// A direction of a body is that of the world's Y. The distance from it is the angle between them.
+struct UpWish {
+  int body = 0;
+  Vec3 direction = Vec3::UnitY();  // unit, body's frame
+};
+
+/// The centre of mass of a body is in a box. The distance from it is that to the box.
+struct InsideWish {
+  int body = 0;
+  Vec3 min = Vec3::Zero(), max = Vec3::Zero();  // m, world
+};
+
+/// Two bodies touch each other, whenever that is. The distance from it is the least between them.
+struct ContactWish {
+  int bodyA = 0, bodyB = 0;
+};
+
+/// What motions of a scene are sampled for, and how far from it they may be: distances are weighed as those of a normal
+/// distribution with this deviation.
+struct Wish {
+  std::string where;
+  std::variant<UpWish, InsideWish, ContactWish> kind;
+  double time = std::numeric_limits<double>::infinity();  // s, of no contact; infinite: the end
+  double deviation = 1;                                   // rad of UpWish, else m; > 0
+};
+
 struct Scene {
   std::string path, text;  // the file itself
   std::string name, description;
@@ -286,6 +312,7 @@ struct Scene {
   Look look = Look::light;
   std::vector<Caption> captions;
   std::optional<TitleCard> titleCard;
+  std::vector<Wish> wishes;
 };
 
 /// Calls visit(links) with the joints of each kind of a scene: those that join two points.

@@ -1,0 +1,110 @@
+#include "sampling/metropolis_chain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "math/elementary.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kMinStep = 1e-4, kMaxStep = 1e-1;                                // of the range of a number in (0, 1)
+constexpr double kAllAnewShare = 0.1, kOneAnewShare = 0.3, kOneMovedShare = 0.3;  // of the steps; else all are moved
+
+/// Around the ends: what leaves (0, 1) on one side comes in on the other.
+double moved(double number, double by) {
+  const double sum = number + by;
+  return std::clamp(sum - std::floor(sum), std::numeric_limits<double>::epsilon(),
+                    1 - std::numeric_limits<double>::epsilon());
+}
+
+void drawAnew(std::vector<double>& numbers, RandomStream& random) {
+  for (double& number : numbers) number = random.nextUniform();
+}
+
+void move(std::vector<double>& numbers, double step, RandomStream& random) {
+  for (double& number : numbers) number = moved(number, step * (2 * random.nextUniform() - 1));
+}
+
+/// Adds the numbers that are not there yet.
+void addNeeded(const std::vector<double>& needed, std::vector<double>& numbers) {
+  for (std::size_t i = numbers.size(); i < needed.size(); ++i) numbers.push_back(needed[i]);
+}
+
+/// Of deviations from the mean.
+double covariance(const std::vector<double>& deviations, std::size_t lag) {
+  double sum = 0;
+  for (std::size_t i = lag; i < deviations.size(); ++i) sum += deviations[i] * deviations[i - lag];
+  return sum / static_cast<double>(deviations.size());
+}
+
+}  // namespace
+
+MetropolisChain::MetropolisChain(std::vector<std::string> places, LogLikelihood logLikelihood,
+                                 const RandomStream& stream, ChainState start)
+    : places_(std::move(places)), logLikelihood_(std::move(logLikelihood)), stream_(stream), state_(std::move(start)) {}
+
+UniformSource MetropolisChain::sourceOf(UniformNumbers& numbers) const {
+  const RandomStream prior = stream_.at("prior");
+  return [&numbers, prior](const std::string& pointer, std::size_t index) {
+    std::vector<double>& ofPlace = numbers[pointer];
+    while (ofPlace.size() <= index) ofPlace.push_back(prior.at(pointer).at(ofPlace.size()).nextUniform());
+    return ofPlace[index];
+  };
+}
+
+UniformNumbers MetropolisChain::proposal(RandomStream& random) const {
+  UniformNumbers numbers = state_.numbers;
+  const double kind = random.nextUniform();
+  const double step = kMinStep * exp(log(kMaxStep / kMinStep) * random.nextUniform());
+  const double count = static_cast<double>(places_.size());
+  const std::string& one =
+      places_[std::min(static_cast<std::size_t>(random.nextUniform() * count), places_.size() - 1)];
+  // A number that nothing needed yet is one of the prior, whatever is done to it.
+  const auto ofOne = numbers.find(one);
+  if (kind < kAllAnewShare) {
+    for (auto& [place, ofPlace] : numbers) drawAnew(ofPlace, random);
+  } else if (kind < kAllAnewShare + kOneAnewShare) {
+    if (ofOne != numbers.end()) drawAnew(ofOne->second, random);
+  } else if (kind < kAllAnewShare + kOneAnewShare + kOneMovedShare) {
+    if (ofOne != numbers.end()) move(ofOne->second, step, random);
+  } else {
+    for (auto& [place, ofPlace] : numbers) move(ofPlace, step, random);
+  }
+  return numbers;
+}
+
+bool MetropolisChain::step(long number) {
+  RandomStream random = stream_.at("step").at(static_cast<std::uint64_t>(number));
+  ChainState next;
+  next.numbers = proposal(random);
+  next.logLikelihood = logLikelihood_(sourceOf(next.numbers));
+  // Not below: from a state that cannot be, too, but to one that can.
+  const bool isAccepted = next.logLikelihood > -std::numeric_limits<double>::infinity() &&
+                          log(random.nextUniform()) <= next.logLikelihood - state_.logLikelihood;
+  if (isAccepted)
+    state_ = std::move(next);
+  else
+    for (auto& [place, ofPlace] : next.numbers) addNeeded(ofPlace, state_.numbers[place]);
+  return isAccepted;
+}
+
+double autocorrelationTime(const std::vector<double>& series) {
+  const double count = static_cast<double>(series.size());
+  double mean = 0;
+  for (const double value : series) mean += value / count;
+  std::vector<double> deviations;
+  for (const double value : series) deviations.push_back(value - mean);
+  const double variance = covariance(deviations, 0);
+  if (series.size() < 4 || !(variance > 0)) return 1;
+  double time = -1;
+  for (std::size_t lag = 0; lag + 1 < series.size(); lag += 2) {
+    const double pair = covariance(deviations, lag) + covariance(deviations, lag + 1);
+    if (pair <= 0) break;
+    time += 2 * pair / variance;
+  }
+  return std::max(time, 1.0);
+}
+
+}  // namespace cradle
