@@ -7,6 +7,7 @@
 #include "commands/frame_folder.h"
 #include "commands/simulate_scene.h"
 #include "commands/trajectory_source.h"
+#include "commands/warnings.h"
 #include "core/error.h"
 #include "core/folder_lock.h"
 #include "core/output_path.h"
@@ -53,17 +54,17 @@ bool areOfOneChain(const SampleRecord& a, const SampleRecord& b) {
 
 /// A whole sample is never replaced by another one.
 void requireSame(const SampleRecord& found, const SampleRecord& wanted, const std::string& folder) {
+  if (!areOfOneChain(found, wanted))
+    throw Error(
+        ErrorKind::output, folder,
+        "is of another chain, or of another number of samples or chains, and is not replaced; name a new folder, "
+        "or remove it");
   if (found.sceneHash != wanted.sceneHash || found.seed != wanted.seed)
     throw Error(
         ErrorKind::output, folder,
         fmt::format(
             "holds a sample of another scene or seed ({}), and is not replaced; name a new folder, or remove it",
             found.seed));
-  if (!areOfOneChain(found, wanted))
-    throw Error(
-        ErrorKind::output, folder,
-        "is of another chain, or of another number of samples or chains, and is not replaced; name a new folder, "
-        "or remove it");
   if (!found.pictures.empty() && !wanted.pictures.empty() && found.pictures != wanted.pictures)
     throw Error(ErrorKind::output, folder,
                 fmt::format("has pictures of another kind ({}; asked are {}), which are not replaced; name a new "
@@ -97,6 +98,7 @@ bool DataSet::isWhole(const SampleRecord& found, const SampleRecord& wanted) con
 void DataSet::simulate(const fs::path& folder, const Scene& scene, SampleRecord& record) const {
   const std::string trajectory = (folder / kKeptTrajectory).string();
   record.stateHash = stateHashOf(trajectory);
+  const CollectedWarnings warnings;
   try {
     if (record.stateHash.empty()) {
       SimulateOptions simulation;
@@ -109,6 +111,7 @@ void DataSet::simulate(const fs::path& folder, const Scene& scene, SampleRecord&
     if (error.kind() != ErrorKind::unstable) throw;
     record.failure = error.what();
   }
+  record.warnings = warnings.texts();
 }
 
 void DataSet::render(const fs::path& folder) const {

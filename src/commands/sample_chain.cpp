@@ -5,35 +5,21 @@
 #include "core/error.h"
 #include "core/interruption.h"
 #include "sampling/metropolis_chain.h"
-#include "simulate/simulate.h"
 
 namespace cradle {
 namespace {
 
 constexpr double kImpossible = -std::numeric_limits<double>::infinity();
 
-/// What is known of a scene that was drawn.
+/// A scene that was drawn, and what came of its wishes.
 struct DrawnMotion {
   DrawnScene drawn;
-  std::vector<WishOutcome> wishes;
-  double logLikelihood = kImpossible;
+  WishedMotion motion;
 };
 
-/// Simulates a scene for its wishes alone. A run that becomes unstable is none.
 DrawnMotion motionOf(DrawnScene drawn) {
-  const Scene& scene = drawn.loaded.scene;
-  WishWatch watch(scene);
-  SimulationSink sink{[&](const Frame& frame) { watch.note(frame); }, [&](const Event& event) { watch.note(event); },
-                      [](const std::string&) {}};
-  if (watch.asksForContacts()) sink.contact = [&](const LastingContact& contact) { watch.note(contact); };
-  double likelihood = kImpossible;
-  try {
-    simulate(scene, sink);
-    likelihood = logLikelihood(scene.wishes, watch.outcomes());
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::unstable) throw;
-  }
-  return {std::move(drawn), watch.outcomes(), likelihood};
+  WishedMotion motion = simulateWishes(drawn.loaded.scene);
+  return {std::move(drawn), std::move(motion)};
 }
 
 /// Simulates what a chain proposes.
@@ -46,7 +32,7 @@ class Proposals {
     auto drawn = sampler_.possibleSceneOf(uniform);
     if (!drawn) return kImpossible;
     proposed_ = drawn->numbers == current_.drawn.numbers ? current_ : motionOf(std::move(*drawn));
-    return proposed_.logLikelihood;
+    return proposed_.motion.logLikelihood;
   }
   void accept() { current_ = std::move(proposed_); }
   const DrawnMotion& current() const { return current_; }
@@ -87,12 +73,12 @@ void SampleChain::make(const SampleRange& range, const std::function<void()>& te
     set_.make(record, sceneOf(sampler_, numbers));
     tell();
   }
-  DrawnMotion start = number == range.first
-                     ? motionOf(sampler_.sample(seed_, chain_))
-                     : DrawnMotion{sceneOf(sampler_, record.chain->numbers), record.wishes, record.chain->logLikelihood};
+  DrawnMotion start = number == range.first ? motionOf(sampler_.sample(seed_, chain_))
+                                            : DrawnMotion{sceneOf(sampler_, record.chain->numbers),
+                                                          WishedMotion{record.wishes, record.chain->logLikelihood}};
   if (number == range.first) {
-    record.chain = ChainRecord{chain_, 0, true, number, start.logLikelihood, start.drawn.numbers};
-    record.wishes = start.wishes;
+    record.chain = ChainRecord{chain_, 0, true, number, start.motion.logLikelihood, start.drawn.numbers};
+    record.wishes = start.motion.outcomes;
     set_.make(record, start.drawn);
     tell(), ++number;
   }
@@ -107,7 +93,7 @@ void SampleChain::make(const SampleRange& range, const std::function<void()>& te
     if (isAccepted) proposals.accept();
     SampleRecord next;
     next.number = number;
-    next.wishes = proposals.current().wishes;
+    next.wishes = proposals.current().motion.outcomes;
     next.chain = ChainRecord{chain_,
                              number - range.first,
                              isAccepted,

@@ -46,11 +46,14 @@ JsonValue jsonOf(const std::vector<WishOutcome>& wishes) {
   return jsonOf(std::move(outcomes));
 }
 
-JsonValue jsonOf(const ChainRecord& chain, bool withNumbers) {
+/// How much of a sample is told.
+enum class Detail { listed, whole };
+
+JsonValue jsonOf(const ChainRecord& chain, Detail detail) {
   JsonValue::Object object = {member("number", double(chain.chain)), member("iteration", double(chain.iteration)),
                               member("accepted", chain.isAccepted), member("sameAs", double(chain.sameAs))};
   object.push_back({"logLikelihood", {}, finiteOrNull(chain.logLikelihood)});
-  if (!withNumbers) return jsonOf(std::move(object));
+  if (detail == Detail::listed) return jsonOf(std::move(object));
   JsonValue::Object numbers;
   for (const auto& [place, ofPlace] : chain.numbers) {
     JsonValue::Array values;
@@ -68,7 +71,13 @@ JsonValue jsonOf(const ChainSummary& chain) {
       member("effectiveSamples", chain.effectiveSamples()), member("met", double(chain.met))});
 }
 
-JsonValue jsonOf(const SampleRecord& record, bool withNumbers) {
+JsonValue::Array textsOf(const std::vector<std::string>& texts) {
+  JsonValue::Array array;
+  for (const std::string& text : texts) array.push_back(jsonOf(text));
+  return array;
+}
+
+JsonValue jsonOf(const SampleRecord& record, Detail detail) {
   JsonValue::Object draws;
   for (const DrawnValue& draw : record.draws) draws.push_back({draw.pointer, {}, draw.value});
   JsonValue::Object object = {member("sample", double(record.number)),   member("folder", sampleName(record.number)),
@@ -78,8 +87,10 @@ JsonValue jsonOf(const SampleRecord& record, bool withNumbers) {
   if (!record.pictures.empty()) object.push_back(member("pictures", record.pictures));
   if (record.failure) object.push_back(member("failure", *record.failure));
   if (record.tar) object.push_back(member("tar", *record.tar));
+  if (detail == Detail::whole && !record.warnings.empty())
+    object.push_back(member("warnings", textsOf(record.warnings)));
   if (!record.wishes.empty()) object.push_back({"wishes", {}, jsonOf(record.wishes)});
-  if (record.chain) object.push_back({"chain", {}, jsonOf(*record.chain, withNumbers)});
+  if (record.chain) object.push_back({"chain", {}, jsonOf(*record.chain, detail)});
   return jsonOf(std::move(object));
 }
 
@@ -170,6 +181,14 @@ ChainSummary summaryOf(long number, const std::vector<const SampleRecord*>& chai
   return summary;
 }
 
+std::vector<std::string> textsAt(const JsonValue& json, const std::string& key) {
+  std::vector<std::string> texts;
+  if (const auto* array = find<JsonValue::Array>(json, key))
+    for (const JsonValue& element : *array)
+      if (const auto* text = std::get_if<std::string>(&element.content)) texts.push_back(*text);
+  return texts;
+}
+
 std::optional<SampleRecord> recordOf(const JsonValue& json) {
   const auto *number = find<double>(json, "sample"), *redrawn = find<double>(json, "redrawn"),
              *seed = find<double>(json, "seed");
@@ -185,6 +204,7 @@ std::optional<SampleRecord> recordOf(const JsonValue& json) {
   record.failure = textAt(json, "failure");
   record.tar = textAt(json, "tar");
   record.wishes = outcomesAt(json);
+  record.warnings = textsAt(json, "warnings");
   if (const JsonValue* chain = memberOf(json, "chain")) record.chain = chainOf(*chain);
   return record;
 }
@@ -267,7 +287,7 @@ std::vector<ChainSummary> summariesOf(const std::vector<SampleRecord>& records) 
 }
 
 void writeRecord(const SampleRecord& record, const std::string& folder) {
-  writeWholeFile((fs::path(folder) / kRecordFile).string(), writeJson(jsonOf(record, true)));
+  writeWholeFile((fs::path(folder) / kRecordFile).string(), writeJson(jsonOf(record, Detail::whole)));
 }
 
 std::optional<SampleRecord> readRecord(const std::string& folder) {
@@ -294,7 +314,7 @@ void writeIndex(const std::string& folder, const std::string& scenePath, const s
     }
     const Listed listed = listedOf(folder, packed);
     JsonValue::Array samples, chains;
-    for (const auto& [number, record] : listed.samples) samples.push_back(jsonOf(record, false));
+    for (const auto& [number, record] : listed.samples) samples.push_back(jsonOf(record, Detail::listed));
     for (const auto& [number, summary] : listed.chains) chains.push_back(jsonOf(summary));
     JsonValue::Object index = {member("scene", scenePath), member("samples", std::move(samples))};
     if (!chains.empty()) index.push_back(member("chains", std::move(chains)));

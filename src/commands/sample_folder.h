@@ -38,6 +38,7 @@ struct SampleRecord {
   std::string stateHash;               // of its trajectory; empty without one
   std::string pictures;                // which were drawn, and how; empty without any
   std::optional<std::string> failure;  // of its simulation
+  std::vector<std::string> warnings;   // the same; told in its folder alone
   std::optional<std::string> tar;      // the file in the data set that it was packed into
   std::vector<WishOutcome> wishes;     // what came of them; empty without a simulation
   std::optional<ChainRecord> chain;

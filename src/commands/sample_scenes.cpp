@@ -7,10 +7,12 @@
 #include <vector>
 
 #include "commands/data_set.h"
+#include "commands/frame_folder.h"
 #include "commands/sample_chain.h"
 #include "commands/sample_folder.h"
 #include "commands/shard.h"
 #include "commands/tar_shard.h"
+#include "commands/warnings.h"
 #include "core/console.h"
 #include "core/error.h"
 #include "core/folder_lock.h"
@@ -88,6 +90,16 @@ void requireNoTar(const fs::path& path) {
                 "is there already, and holds these samples; remove it, or name a new folder");
 }
 
+/// That there are warnings, which are in the samples.
+void tellWarnings(const std::vector<SampleRecord>& records) {
+  const auto warned = [](const auto& record) { return !record.warnings.empty(); };
+  const auto first = std::find_if(records.begin(), records.end(), warned);
+  if (first == records.end()) return;
+  warn(fmt::format("of {} of {} samples there are warnings, in their {}; the first is of {}: {}",
+                   std::count_if(records.begin(), records.end(), warned), records.size(), kRecordFile,
+                   sampleName(first->number), first->warnings.front()));
+}
+
 /// What a data set with wishes is worth.
 void tellWishes(const std::vector<SampleRecord>& records) {
   const std::vector<ChainSummary> chains = summariesOf(records);
@@ -131,9 +143,13 @@ void sampleScenes(const std::string& scene, const std::string& folder, const Sam
         [&](long number, const std::function<void()>& tell) {
           const long unit = work.firstUnit() + number;
           if (options.chains) return SampleChain(sampler, set, options.seed, unit).make(work.samplesOf(unit), tell);
+          const DrawnScene drawn = sampler.sample(options.seed, unit);
           SampleRecord record;
           record.number = unit;
-          set.make(record, sampler.sample(options.seed, unit));
+          if (const auto found = set.found(unit)) record.wishes = found->wishes;
+          if (record.wishes.empty() && !drawn.loaded.scene.wishes.empty() && !options.simulates)
+            record.wishes = simulateWishes(drawn.loaded.scene).outcomes;
+          set.make(record, drawn);
           tell();
         },
         [&](long done) { progress.update(done); });
@@ -151,6 +167,7 @@ void sampleScenes(const std::string& scene, const std::string& folder, const Sam
   writeIndex(folder, scene, packs ? records : std::vector<SampleRecord>{});
   if (packs)
     for (const SampleRecord& record : records) fs::remove_all(set.folderOf(record.number));
+  tellWarnings(records);
   tellWishes(records);
   tellFailures(records);
 }

@@ -91,13 +91,14 @@ bool MetropolisChain::step(long number) {
 }
 
 double autocorrelationTime(const std::vector<double>& series) {
+  const auto [least, most] = std::minmax_element(series.begin(), series.end());
+  if (series.size() < 4 || *least == *most) return 1;
   const double count = static_cast<double>(series.size());
   double mean = 0;
   for (const double value : series) mean += value / count;
   std::vector<double> deviations;
   for (const double value : series) deviations.push_back(value - mean);
   const double variance = covariance(deviations, 0);
-  if (series.size() < 4 || !(variance > 0)) return 1;
   double time = -1;
   for (std::size_t lag = 0; lag + 1 < series.size(); lag += 2) {
     const double pair = covariance(deviations, lag) + covariance(deviations, lag + 1);

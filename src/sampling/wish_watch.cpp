@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "math/elementary.h"
 #include "simulate/overlap_meter.h"
+#include "simulate/simulate.h"
 
 namespace cradle {
 namespace {
@@ -130,6 +131,20 @@ double logLikelihood(const std::vector<Wish>& wishes, const std::vector<WishOutc
     sum += deviations * deviations;
   }
   return -sum / 2;
+}
+
+WishedMotion simulateWishes(const Scene& scene) {
+  WishWatch watch(scene);
+  SimulationSink sink{[&](const Frame& frame) { watch.note(frame); }, [&](const Event& event) { watch.note(event); },
+                      [](const std::string&) {}};
+  if (watch.asksForContacts()) sink.contact = [&](const LastingContact& contact) { watch.note(contact); };
+  try {
+    simulate(scene, sink);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::unstable) throw;
+    return {watch.outcomes(), -kInfinity};
+  }
+  return {watch.outcomes(), logLikelihood(scene.wishes, watch.outcomes())};
 }
 
 bool areAllMet(const std::vector<WishOutcome>& outcomes) {

@@ -56,6 +56,15 @@ class WishWatch {
 /// Log of the weight of a motion among those of its scene: minus half the sum of squares of distances, in deviations.
 double logLikelihood(const std::vector<Wish>& wishes, const std::vector<WishOutcome>& outcomes);
 
+/// What came of the wishes of a scene that was simulated for them alone.
+struct WishedMotion {
+  std::vector<WishOutcome> outcomes;
+  double logLikelihood = 0;  // -infinity if the run became unstable: it cannot be
+};
+
+/// Simulates a scene that has passed refuseUnsupported. Throws what simulating throws, but Error(unstable).
+WishedMotion simulateWishes(const Scene& scene);
+
 bool areAllMet(const std::vector<WishOutcome>& outcomes);
 
 }  // namespace cradle

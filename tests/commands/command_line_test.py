@@ -110,6 +110,49 @@ class Samples(InTemporaryFolder):
         self.refuses(5, ["sample_000000", "size 64x36"], *arguments, "--render", "--frames", "0:1", "--size", "32x18")
         self.assertEqual(content(self.path("set/sample_000001/scene.json")), before)
 
+    def wished(self, **changes):
+        """A box that falls and is wished to end on a face that it falls on in 1 of 6 samples."""
+        wish = {"body": "box", "up": [1, 0, 0], "deviation": 0.5}
+        return self.drawn(**{"duration": 1.2, "accuracy": "visual", "wishes": [wish], **changes})
+
+    def test_samples_tell_how_many_meet_the_wishes(self):
+        arguments = ("sample", self.wished(), "-n", "30", "-q", "-o")
+        simulated, told = cradle(*arguments, self.path("a"), "--simulate"), cradle(*arguments, self.path("b"))
+        wishes = [sample["wishes"] for sample in self.index("a")]
+        met = sum(outcomes[0]["met"] for outcomes in wishes)
+        self.assertIn(met, range(1, 30))
+        self.assertEqual(told.stdout, f"{met} of 30 samples meet all wishes\n")
+        self.assertEqual(simulated.stdout, told.stdout)
+        self.assertEqual([sample["wishes"] for sample in self.index("b")], wishes)
+
+    def test_chains_meet_wishes_more_often_and_go_on_with_the_same_bits(self):
+        arguments = ("sample", self.wished(), "-n", "180", "--chains", "3", "-q", "-o")
+        result = cradle(*arguments, self.path("whole"), "--simulate")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        whole = self.index("whole")
+        self.assertGreater(sum(sample["wishes"][0]["met"] for sample in whole), 90)  # of 180; 30 without chains
+        for sample in whole:
+            folder = self.path(os.path.join("whole", sample["folder"]))
+            self.assertEqual(os.path.exists(os.path.join(folder, "trajectory.sqlite")), sample["chain"]["accepted"])
+            self.assertEqual(sample["stateHash"], whole[sample["chain"]["sameAs"]]["stateHash"])
+        cradle(*arguments, self.path("parts"), "--shard", "1/2", "-j", "2")
+        for number in range(20, 60):  # as a kill leaves the first chain
+            shutil.rmtree(self.path(f"parts/sample_{number:06}"))
+        for shard in ("1/2", "2/2"):
+            self.assertEqual(cradle(*arguments, self.path("parts"), "--shard", shard).returncode, 0)
+        keys = ("sample", "sceneHash", "draws", "wishes", "chain")
+        self.assertEqual([[sample[key] for key in keys] for sample in self.index("parts")],
+                         [[sample[key] for key in keys] for sample in whole])
+        self.refuses(5, ["sample_000060", "another number of samples or chains"], "sample", self.wished(), "-n", "180", "--chains",
+                     "2", "-o", self.path("parts"))
+        self.refuses(5, ["sample_000000", "is of another chain"], "sample", self.wished(), "-n", "180", "-o", self.path("parts"))
+
+    def test_chains_need_wishes_and_draws(self):
+        self.refuses(2, ["no wishes"], "sample", self.drawn(), "-n", "9", "--chains", "3", "-o", self.path("a"))
+        self.refuses(2, ["no values to draw"], "sample", self.write("plain.json", scene()), "-n", "9", "--chains", "3",
+                     "-o", self.path("a"))
+        self.refuses(2, ["--chains", "1 to 9"], "sample", self.wished(), "-n", "9", "--chains", "10", "-o", self.path("a"))
+
     def test_pictures_of_an_ended_run_with_other_options_do_not_stay(self):
         arguments = ("sample", self.drawn(), "-o", self.path("set"), "--render", "--frames")
         cradle(*arguments, "0:3")
