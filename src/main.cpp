@@ -27,6 +27,7 @@
 #include "commands/sample_scenes.h"
 #include "commands/simulate_scene.h"
 #include "commands/study_scenes.h"
+#include "commands/submit.h"
 #include "commands/verify_truth.h"
 #include "commands/warnings.h"
 #include "core/console.h"
@@ -51,6 +52,7 @@ struct CommandLine {
   CompareOptions comparison;
   PlotOptions plot;
   SampleOptions sampling;
+  SubmitOptions submission;
   InspectOptions inspection;
   long frame = 0;
   bool json = false, quiet = false, sideBySide = false, exportsContacts = false;
@@ -277,6 +279,27 @@ void addSample(CLI::App& app, CommandLine& line) {
   addPictureOptions(sample, line);
 }
 
+void addSubmit(CLI::App& app, CommandLine& line) {
+  auto* submit =
+      addCommand(app, line, "submit", "Do a long command in parts, as jobs of a scheduler",
+                 "cradle submit local video scenes/newtons_cradle.json -o cradle.mp4\n"
+                 "  cradle submit slurm --run sample distributions/dropped_shapes.json -n 10000 --passes all -o set",
+                 [&app, &line] {
+                   line.submission.command = app.get_subcommand("submit")->remaining();
+                   submitCommand(line.submission, line.quiet);
+                 });
+  submit
+      ->add_option("scheduler", line.submission.scheduler,
+                   "slurm, parallel (GNU parallel), or local: this machine alone")
+      ->required();
+  submit->add_flag("--run", line.submission.starts,
+                   "start the jobs, too, which are written into OUTPUT.jobs (default: sh OUTPUT.jobs/run.sh does)");
+  submit->footer(
+      submit->get_footer() +
+      "\nBehind the scheduler stands the command: simulate, render, video or sample, its input, and its options.");
+  submit->fallthrough(false)->prefix_command();  // the words of a command are not ours
+}
+
 void addQuestions(CLI::App& app, CommandLine& line) {
   auto* inspect = addCommand(app, line, "inspect", "Say what the objects of a mesh file are as bodies of density 1",
                              "cradle inspect assets/l_prism.3ds", [&] { inspectMesh(line.input, line.inspection); });
@@ -359,6 +382,7 @@ void checkValues(CLI::App& app) {
 /// Names the first word that nothing was known to do with.
 void refuseUnknownWord(const CLI::App& app) {
   const std::vector<CLI::App*> parsed = app.get_subcommands();
+  if (!parsed.empty() && parsed[0]->get_prefix_command()) return;  // its words are those of a command
   std::vector<std::string> words = app.remaining(true);
   const auto option = std::find_if(words.begin(), words.end(), [](const auto& word) { return word.starts_with("-"); });
   if (!parsed.empty() && option != words.end()) refuseOption(*option, app, *parsed[0]);
@@ -417,6 +441,7 @@ int run(int argc, char** argv) {
   addSimulate(app, line);
   addPictures(app, line);
   addSample(app, line);
+  addSubmit(app, line);
   addPlot(app, line);
   addStudy(app, line);
   addQuestions(app, line);

@@ -72,12 +72,6 @@ void requireSame(const SampleRecord& found, const SampleRecord& wanted, const st
                             found.pictures, wanted.pictures));
 }
 
-bool holdsText(const fs::path& path, const std::string& text) {
-  std::error_code missing;
-  return fs::file_size(path, missing) == text.size() && !missing &&
-         readFile(path.string(), text.size(), ErrorKind::output) == text;
-}
-
 /// What came of the wishes of a scene in a whole trajectory.
 std::vector<WishOutcome> outcomesOf(const std::string& trajectory, const Scene& scene) {
   const TrajectoryReader run(trajectory);
@@ -134,7 +128,7 @@ void DataSet::make(const SampleRecord& asked, const DrawnScene& drawn) const {
   if (found) requireSame(*found, record, folder.string());
   if (found && isWhole(*found, record)) return;
   makeFolder(folder.string());
-  const bool hasScene = holdsText(folder / kSceneFile, text);
+  const bool hasScene = holdsText((folder / kSceneFile).string(), text);
   if (!found) clearUnfinished(folder, hasScene);
   if (!hasScene) writeWholeFile((folder / kSceneFile).string(), text);
   if (isRepeated) {

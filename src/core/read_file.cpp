@@ -48,6 +48,12 @@ std::string readFile(const std::string& path, std::uint64_t limit, ErrorKind kin
   return bytes;
 }
 
+bool holdsText(const std::string& path, const std::string& text) {
+  std::error_code missing;
+  return std::filesystem::file_size(path, missing) == text.size() && !missing &&
+         readFile(path, text.size(), ErrorKind::output) == text;
+}
+
 bool isBelow(const std::string& path, const std::filesystem::path& folder) {
   std::error_code failed;
   const std::filesystem::path whole = std::filesystem::weakly_canonical(path, failed);

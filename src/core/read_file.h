@@ -19,6 +19,9 @@ void requireFileOrFolder(const std::string& path, ErrorKind kind);
 /// `limit` bytes; then nothing of it is read.
 std::string readFile(const std::string& path, std::uint64_t limit, ErrorKind kind);
 
+/// Whether a regular file is there that holds this text, which is not empty, and nothing else.
+bool holdsText(const std::string& path, const std::string& text);
+
 /// Whether what `path` leads to, through all links, is below `folder`, which has none; nothing need be there.
 bool isBelow(const std::string& path, const std::filesystem::path& folder);
 

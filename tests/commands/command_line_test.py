@@ -54,6 +54,91 @@ class InTemporaryFolder(unittest.TestCase):
         return result
 
 
+class Submitted(InTemporaryFolder):
+    def submit(self, *words):
+        return cradle("submit", *words)
+
+    def script(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return file.read()
+
+    def test_a_film_in_parts_is_that_of_the_command(self):
+        film = scene(duration=2.1)
+        path = self.write("it's.json", film)
+        self.assertEqual(cradle("video", path, "-o", self.path("one.mp4")).returncode, 0)
+        result = self.submit("local", "--run", "video", path, "-o", self.path("a film's.mp4"))
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(result.stdout.split("\n")[:4], ["simulate: 1 task", "render: 3 tasks", "check: 1 task", "encode: 1 task"])
+        self.assertEqual(content(self.path("a film's.mp4")), content(self.path("one.mp4")))
+
+    def test_jobs_go_on_where_they_were_and_others_begin_anew(self):
+        path = self.write("a.json", scene(duration=0.2))
+        jobs = lambda: self.submit("local", "--run", "render", path, "-o", self.path("frames"))
+        self.assertEqual(jobs().returncode, 0)
+        os.remove(self.path("frames/frame_000007.png"))
+        stamps = [os.stat(self.path(name)).st_mtime_ns for name in ("frames/frame_000003.png", "frames.jobs/trajectory.sqlite")]
+        self.assertEqual(jobs().returncode, 0)
+        self.assertTrue(os.path.exists(self.path("frames/frame_000007.png")))
+        self.assertEqual([os.stat(self.path(name)).st_mtime_ns for name in ("frames/frame_000003.png", "frames.jobs/trajectory.sqlite")],
+                         stamps)
+        self.write("a.json", scene(duration=0.1))
+        shutil.rmtree(self.path("frames"))
+        self.assertEqual(jobs().returncode, 0)
+        self.assertNotEqual(os.stat(self.path("frames.jobs/trajectory.sqlite")).st_mtime_ns, stamps[1])
+        self.assertEqual(len(os.listdir(self.path("frames"))), 6)
+
+    def test_what_is_missing_is_named(self):
+        path = self.write("a.json", scene(duration=0.2))
+        self.submit("local", "--run", "render", path, "-o", self.path("frames"))
+        os.remove(self.path("frames/frame_000007.png"))
+        check = subprocess.run(["sh", self.path("frames.jobs/3_check.sh")], timeout=60)
+        self.assertEqual(check.returncode, 5)
+        self.assertIn("frame_000007.png is missing", self.script("frames.jobs/3_check_1.log"))
+        self.write("a.json", scene(duration="long"))  # what fails ends the jobs, and is in the log
+        os.remove(self.path("frames.jobs/trajectory.sqlite"))
+        ended = subprocess.run(["sh", self.path("frames.jobs/run.sh")], capture_output=True, text=True, timeout=60)
+        self.assertEqual(ended.returncode, 5)
+        self.assertIn("simulate has not come to its end", ended.stderr)
+        self.assertIn("/duration", self.script("frames.jobs/1_simulate_1.log"))
+
+    def test_slurm_has_arrays_that_wait_for_each_other(self):
+        path = self.write("a.json", scene(duration=3))
+        bin = self.path("bin")  # a cluster's commands, as far as they are used
+        os.mkdir(bin)
+        for name, text in (("scontrol", "echo 'MaxArraySize            = 3'"),
+                           ("sbatch", 'n=$(cat n 2>/dev/null || echo 40); echo $((n + 1)) | tee n; echo "$@" >> calls')):
+            with open(os.path.join(bin, name), "w", encoding="utf-8") as file:
+                file.write(f"#!/bin/sh\n{text}\n")
+            os.chmod(os.path.join(bin, name), 0o755)
+        environment = {**os.environ, "PATH": bin + ":" + os.environ["PATH"]}
+        result = cradle("submit", "slurm", "--run", "video", path, "-o", self.path("film.mp4"), env=environment)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("#SBATCH --array=1-2\n", self.script("film.mp4.jobs/2_render.sh"))  # as the cluster allows
+        calls = self.script("film.mp4.jobs/calls").splitlines()
+        self.assertEqual([call.split()[-1] for call in calls], ["./1_simulate.sh", "./2_render.sh", "./3_check.sh", "./4_encode.sh"])
+        self.assertNotIn("dependency", calls[0])
+        for call, before in zip(calls[1:], (41, 42, 43)):
+            self.assertIn(f"--dependency=afterok:{before} --kill-on-invalid-dep=yes", call)
+
+    def test_samples_in_parts_are_those_of_the_command(self):
+        path = self.write("drawn.json", scene(bodies=[Samples.GROUND, Samples.DROPPED]))
+        cradle("sample", path, "-n", "5", "--seed", "7", "--simulate", "-o", self.path("one"))
+        result = self.submit("local", "--run", "sample", path, "-n", "5", "--seed=7", "--simulate", "-o", self.path("many"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(Samples.index(self, "many"), Samples.index(self, "one"))
+        self.assertEqual(sorted(os.listdir(self.path("many.jobs"))), ["1_sample.sh", "1_sample_1.log", "2_check.sh", "2_check_1.log", "run.sh"])
+
+    def test_what_cannot_be_submitted_is_told_before_anything_is_written(self):
+        path = self.write("a.json", scene())
+        self.refuses(2, ["slurm, parallel (GNU parallel) and local"], "submit", "condor", "render", path, "-o", self.path("f"))
+        self.refuses(2, ["plan", "simulate, render, video, sample"], "submit", "local", "plan", path)
+        self.refuses(2, ["before all options"], "submit", "local", "render", "-o", self.path("f"), path)
+        self.refuses(2, ["-o is missing"], "submit", "local", "render", path)
+        self.refuses(2, ["--frames", "all pictures"], "submit", "local", "render", path, "--frames", "0:3", "-o", self.path("f"))
+        self.refuses(3, ["/duration"], "submit", "local", "render", self.write("b.json", scene(duration=-1)), "-o", self.path("f"))
+        self.assertFalse(os.path.exists(self.path("f.jobs")))
+
+
 class Samples(InTemporaryFolder):
     DROPPED = {"name": "box", "shape": {"box": {"size": [0.2, 0.1, 0.3]}},
                "position": {"draw": {"uniform": [[-1, 0.5, -1], [1, 1, 1]]}}, "orientation": {"draw": "rotation"},

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace cradle {
+
+struct SubmitOptions {
+  std::string scheduler;             // slurm, parallel, or local
+  std::vector<std::string> command;  // simulate, render, video or sample, its input, and its options
+  bool starts = false;               // the jobs, once they are written
+};
+
+/// `cradle submit SCHEDULER COMMAND...`: writes into OUTPUT.jobs the scripts that do a command in parts, one stage
+/// after the other, and run.sh that starts them. Each task may be ended and started again at any time. If they are
+/// started here, this process becomes run.sh, and does not return. Throws Error(usage), Error(output), and what loading
+/// the input throws.
+void submitCommand(const SubmitOptions& options, bool quiet);
+
+}  // namespace cradle
