@@ -261,6 +261,8 @@ void addSample(CLI::App& app, CommandLine& line) {
   sample->add_option("--seed", line.sampling.seed, "whole number; another one gives other samples")
       ->capture_default_str();
   sample->add_flag("--simulate", line.sampling.simulates, "write the trajectory of each sample");
+  sample->add_flag("--check-accuracy", line.sampling.findsHorizon,
+                   "run each again, finer: the frame from which on its motion is one of many (horizon)");
   sample->add_flag("--render", line.sampling.renders, "draw the frames of each sample, into its folder");
   sample->add_option("--passes", line.pictures.passes, "draw these passes, as those of render; rgb is one of them");
   sample->add_option("--pass-format", line.pictures.passFormat, "npy or exr, as that of render")->capture_default_str();

@@ -72,6 +72,14 @@ void requireSame(const SampleRecord& found, const SampleRecord& wanted, const st
                             found.pictures, wanted.pictures));
 }
 
+/// What a whole trajectory says of its horizon; empty if it does not, or is not there.
+std::string horizonIn(const std::string& trajectory) {
+  if (!fs::exists(trajectory)) return "";
+  const TrajectoryReader run(trajectory);
+  const auto text = run.meta().find(kHorizonKey);
+  return text == run.meta().end() ? "" : text->second;
+}
+
 /// What came of the wishes of a scene in a whole trajectory.
 std::vector<WishOutcome> outcomesOf(const std::string& trajectory, const Scene& scene) {
   const TrajectoryReader run(trajectory);
@@ -86,7 +94,8 @@ std::vector<WishOutcome> outcomesOf(const std::string& trajectory, const Scene& 
 
 bool DataSet::isWhole(const SampleRecord& found, const SampleRecord& wanted) const {
   if (found.failure) return true;
-  return (!options_.simulates || !found.stateHash.empty()) && (wanted.pictures.empty() || !found.pictures.empty());
+  return (!options_.simulates || !found.stateHash.empty()) && (!options_.findsHorizon || !found.horizon.empty()) &&
+         (wanted.pictures.empty() || !found.pictures.empty());
 }
 
 void DataSet::simulate(const fs::path& folder, const Scene& scene, SampleRecord& record) const {
@@ -94,11 +103,13 @@ void DataSet::simulate(const fs::path& folder, const Scene& scene, SampleRecord&
   record.stateHash = stateHashOf(trajectory);
   const CollectedWarnings warnings;
   try {
-    if (record.stateHash.empty()) {
+    if (options_.findsHorizon) record.horizon = horizonIn(trajectory);
+    if (record.stateHash.empty() || (options_.findsHorizon && record.horizon.empty())) {
       SimulateOptions simulation;
-      simulation.scene.assetRoot = pictures_.assetRoot;
+      simulation.scene.assetRoot = pictures_.assetRoot, simulation.findsHorizon = options_.findsHorizon;
       simulateScene((folder / kSceneFile).string(), trajectory, simulation, true);
       record.stateHash = stateHashOf(trajectory);
+      if (options_.findsHorizon) record.horizon = horizonIn(trajectory);
     }
     if (!scene.wishes.empty()) record.wishes = outcomesOf(trajectory, scene);
   } catch (const Error& error) {
@@ -132,7 +143,9 @@ void DataSet::make(const SampleRecord& asked, const DrawnScene& drawn) const {
   if (!found) clearUnfinished(folder, hasScene);
   if (!hasScene) writeWholeFile((folder / kSceneFile).string(), text);
   if (isRepeated) {
-    record.stateHash = stateHashOf((folderOf(record.chain->sameAs) / kKeptTrajectory).string());
+    const std::string trajectory = (folderOf(record.chain->sameAs) / kKeptTrajectory).string();
+    record.stateHash = stateHashOf(trajectory);
+    if (options_.findsHorizon) record.horizon = horizonIn(trajectory);
   } else {
     if (options_.simulates) simulate(folder, drawn.loaded.scene, record);
     if (record.failure)

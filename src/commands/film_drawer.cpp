@@ -50,7 +50,8 @@ FilmDrawer::FilmDrawer(TrajectorySource& trajectory, const PictureOrder& order, 
                         [this](long number) { return source_.drawnFrameAt(number); },
                         source_.frameCount(),
                         source_.isWhole() ? source_.drawnEvents() : std::vector<Event>(),
-                        [this](long number) { return source_.drawnContactsAt(number); }};
+                        [this](long number) { return source_.drawnContactsAt(number); },
+                        source_.isWhole() ? source_.reader().horizon() : std::nullopt};
   overlay_.emplace(film, *order.overlays);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -77,6 +78,14 @@ JsonValue::Array textsOf(const std::vector<std::string>& texts) {
   return array;
 }
 
+/// A number of a frame, or a word.
+decltype(JsonValue::content) horizonOf(const std::string& text) {
+  long frame = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), frame);
+  if (fault != std::errc() || end != text.data() + text.size()) return text;
+  return static_cast<double>(frame);
+}
+
 JsonValue jsonOf(const SampleRecord& record, Detail detail) {
   JsonValue::Object draws;
   for (const DrawnValue& draw : record.draws) draws.push_back({draw.pointer, {}, draw.value});
@@ -84,6 +93,7 @@ JsonValue jsonOf(const SampleRecord& record, Detail detail) {
                               member("seed", double(record.seed)),       member("sceneHash", record.sceneHash),
                               member("redrawn", double(record.redrawn)), member("draws", std::move(draws))};
   if (!record.stateHash.empty()) object.push_back(member("stateHash", record.stateHash));
+  if (!record.horizon.empty()) object.push_back(member("horizon", horizonOf(record.horizon)));
   if (!record.pictures.empty()) object.push_back(member("pictures", record.pictures));
   if (record.failure) object.push_back(member("failure", *record.failure));
   if (record.tar) object.push_back(member("tar", *record.tar));
@@ -200,6 +210,8 @@ std::optional<SampleRecord> recordOf(const JsonValue& json) {
   record.seed = static_cast<std::uint64_t>(*seed), record.sceneHash = *sceneHash;
   for (const JsonMember& draw : *draws) record.draws.push_back({draw.key, draw.value});
   record.stateHash = textAt(json, "stateHash").value_or("");
+  const auto* horizon = find<double>(json, "horizon");
+  record.horizon = horizon ? fmt::format("{}", *horizon) : textAt(json, "horizon").value_or("");
   record.pictures = textAt(json, "pictures").value_or("");
   record.failure = textAt(json, "failure");
   record.tar = textAt(json, "tar");

@@ -36,6 +36,7 @@ struct SampleRecord {
   int redrawn = 0;        // times that a body was drawn again, for it overlapped others
   std::vector<DrawnValue> draws;
   std::string stateHash;               // of its trajectory; empty without one
+  std::string horizon;                 // frame from which on its motion is one of many, or "none"; empty: not known
   std::string pictures;                // which were drawn, and how; empty without any
   std::optional<std::string> failure;  // of its simulation
   std::vector<std::string> warnings;   // the same; told in its folder alone

@@ -121,7 +121,7 @@ void sampleScenes(const std::string& scene, const std::string& folder, const Sam
                   const PictureOptions& pictures, bool quiet) {
   SampleOptions options = asked;
   options.renders = asked.renders || pictures.passes.has_value();
-  options.simulates = asked.simulates || options.renders;
+  options.simulates = asked.simulates || options.renders || asked.findsHorizon;
   requireOptions(options);
   const Work work(options);
   requireSamplesAlone(folder);

@@ -12,6 +12,7 @@ struct SampleOptions {
   long count = 1;
   std::uint64_t seed = 1;
   bool simulates = false, renders = false;  // rendering simulates
+  bool findsHorizon = false;                // of each sample, by finer runs; simulates
   std::optional<std::string> shard;         // "PART/PARTS", from 1/PARTS on: of the samples, or of the chains
   std::optional<long> chains;               // the samples are of so many Markov chains, for the wishes of the scene
   int processes = 1;

@@ -116,7 +116,7 @@ std::string linksOf(const Scene& scene) {
   return text;
 }
 
-void printAchievedAccuracy(const Scene& scene, const std::string& output, bool quiet) {
+void checkAccuracy(const Scene& scene, const std::string& output, bool prints, bool quiet) {
   const TrajectoryReader run(output);
   Progress progress("Checking", "frames", run.frameCount(), quiet);
   try {
@@ -125,7 +125,8 @@ void printAchievedAccuracy(const Scene& scene, const std::string& output, bool q
       progress.update(done);
     });
     progress.endLine();
-    show("{}\n", describe(accuracy));
+    addToMeta(output, kHorizonKey, accuracy.horizon ? std::to_string(accuracy.horizon->frame) : "none");
+    if (prints) show("{}\n", describe(accuracy));
   } catch (const Error& error) {
     throw Error(error.kind(), "", fmt::format("{}; {} is whole, but its accuracy is not known", error.what(), output));
   }
@@ -221,7 +222,7 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   } catch (const std::bad_alloc&) {
     tellWhatIsKept(ErrorKind::limit, "out of memory");
   }
-  if (options.checksAccuracy) printAchievedAccuracy(scene, output, quiet);
+  if (options.checksAccuracy || options.findsHorizon) checkAccuracy(scene, output, options.checksAccuracy, quiet);
 }
 
 void checkScene(const std::string& scenePath, const SceneOptions& options) {

@@ -22,7 +22,8 @@ struct SceneOptions {
 
 struct SimulateOptions {
   SceneOptions scene;
-  bool checksAccuracy = false;  // afterwards, by finer runs; printed
+  bool checksAccuracy = false;  // afterwards, by finer runs; printed, and the horizon goes into the trajectory
+  bool findsHorizon = false;    // the same, not printed
   bool untilItFails = false;    // a run that becomes unstable leaves a whole trajectory of what was before
   bool isStrict = false;  // ends at the first broken promise or correction, or where bodies are too deep in others
 };

@@ -83,6 +83,7 @@ FilmOverlay::FilmOverlay(const FilmRecord& film, const OverlayChoice& choice)
       view_(film.view),
       frameAt_(film.frameAt),
       contactsAt_(film.contactsAt),
+      horizon_(film.horizon),
       camera_(scene_, view_.camera, frameAt_) {
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
     if (scene_.bodies[i].motion != Motion::fixed) movingBodies_.push_back(static_cast<int>(i));
@@ -107,7 +108,7 @@ void FilmOverlay::readFilm(const FilmRecord& film) {
     plot_ = {"height of " + choice_.plottedBody + " (m)", {}, {{"", {}, kFirstCurve}}};
   }
   if (choice_.time)
-    plot_.upperEdge = upperEdgeBeside(timePanelEnd(scene_, film.width, film.height), film.width, film.height);
+    plot_.upperEdge = upperEdgeBeside(timePanelEnd(scene_, horizon_, film.width, film.height), film.width, film.height);
   std::array<long, kCorners.size()> hidden{};
   for (long number = 0; number < film.frameCount; ++number) {
     const Frame frame = film.frameAt(number);
@@ -165,13 +166,13 @@ void FilmOverlay::draw(const Frame& frame, Image& image) {
   if (choice_.velocities) drawVelocities(frame, lens, canvas);
   if (choice_.contacts) drawContacts(frame, lens, canvas);
   if (choice_.plot) drawPlot(canvas, plot_, static_cast<std::size_t>(frame.number));
-  if (choice_.time) drawTimePanel(canvas, scene_, frame.time);
+  if (choice_.time) drawTimePanel(canvas, scene_, horizon_, frame.time);
 }
 
 std::vector<PicturePart> FilmOverlay::upperPanels(int width, int height) const {
   std::vector<PicturePart> panels;
   if (choice_.time) {
-    const PicturePoint end = timePanelEnd(scene_, width, height);
+    const PicturePoint end = timePanelEnd(scene_, horizon_, width, height);
     panels.push_back({0, 0, end.x, end.y});
   }
   if (choice_.plot && plot_.corner == PlotCorner::upperRight) {

@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct FilmRecord {
   long frameCount = 0;
   std::vector<Event> events;                                              // in order of time
   std::function<std::vector<ContactWrench>(long frame)> contactsAt = {};  // for contacts alone
+  std::optional<double> horizon = {};  // s: from there on the motion is one of many; none: not known, or never
 };
 
 /// Draws what was chosen on the finished pictures of a film. A picture depends on the film and the frame's number
@@ -66,6 +68,7 @@ class FilmOverlay {
   const View view_;
   const FrameSource frameAt_;
   const std::function<std::vector<ContactWrench>(long frame)> contactsAt_;
+  std::optional<double> horizon_;  // s
   FilmCamera camera_;
   std::vector<Event> impacts_;  // with an impulse, in order of time
   std::vector<int> movingBodies_;

@@ -20,9 +20,11 @@ int timeDigits(const Scene& scene) {
   return static_cast<int>(std::clamp(std::ceil(-std::log10(frameInterval(scene))), 0.0, 9.0));
 }
 
-std::string timeText(const Scene& scene, double time) {
+std::string timeText(const Scene& scene, std::optional<double> horizon, double time) {
   const double speed = scene.output.playbackSpeed;
-  return fmt::format("t = {:.{}f} s{}", time, timeDigits(scene), speed == 1 ? "" : fmt::format("   speed {:g}", speed));
+  return fmt::format("t = {:.{}f} s{}{}", time, timeDigits(scene),
+                     speed == 1 ? "" : fmt::format("   speed {:g}", speed),
+                     horizon && time >= *horizon ? "   one of many motions" : "");
 }
 
 struct TimeLayout {
@@ -44,20 +46,20 @@ TimeLayout layOutTime(const Scene& scene, int width, int height) {
 
 }  // namespace
 
-PicturePoint timePanelEnd(const Scene& scene, int width, int height) {
+PicturePoint timePanelEnd(const Scene& scene, std::optional<double> horizon, int width, int height) {
   const TimeLayout layout = layOutTime(scene, width, height);
-  const double longest = textWidth(timeText(scene, scene.duration), layout.timeSize);
+  const double longest = textWidth(timeText(scene, horizon, scene.duration), layout.timeSize);
   const double breadth = std::max(textWidth(layout.name, layout.nameSize), longest);
   return {layout.edge + std::round(breadth + 2 * layout.padding), std::round(layout.timeLine + layout.padding)};
 }
 
-void drawTimePanel(Canvas& canvas, const Scene& scene, double time) {
+void drawTimePanel(Canvas& canvas, const Scene& scene, std::optional<double> horizon, double time) {
   const TimeLayout layout = layOutTime(scene, canvas.width(), canvas.height());
   const double left = layout.edge + layout.padding;
-  canvas.rectangle({layout.edge, layout.edge}, timePanelEnd(scene, canvas.width(), canvas.height()), layout.padding,
-                   kTimeGround);
+  canvas.rectangle({layout.edge, layout.edge}, timePanelEnd(scene, horizon, canvas.width(), canvas.height()),
+                   layout.padding, kTimeGround);
   drawText(canvas, layout.name, layout.nameSize, {left, layout.nameLine}, kTimeInk);
-  drawText(canvas, timeText(scene, time), layout.timeSize, {left, layout.timeLine}, kTimeInk);
+  drawText(canvas, timeText(scene, horizon, time), layout.timeSize, {left, layout.timeLine}, kTimeInk);
 }
 
 }  // namespace cradle

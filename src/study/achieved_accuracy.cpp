@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scene/named_accuracy.h"
+#include "simulate/colliders.h"
 #include "simulate/simulate.h"
 #include "simulate/world.h"
 #include "study/motion_error.h"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double kFiner = 100;                // times
 constexpr double kLargestDisturbance = 1e-5;  // m/s and rad/s
+constexpr double kMaxOffset = 0.01;           // of a body's size, up to the horizon
 constexpr std::size_t kFramesBefore = 6;      // a fault comes at once: growth is what it was before
 
 /// By how much a fixed time step has to be divided for a hundredth of the error.
@@ -66,6 +68,25 @@ void compare(const Frame& frame, const Frame& finer, std::vector<BodyError>& bod
     const double error = std::max(difference.position, difference.orientation);
     if (error > bodies[i].error) bodies[i] = {bodies[i].body, error, frame.time};
   }
+}
+
+/// m: the radius of what moves, as of its collider if it had one; 0 of a shape that can have none.
+std::vector<double> radiiOf(const Scene& scene) {
+  std::vector<double> radii;
+  for (Body body : scene.bodies) {
+    if (body.motion == Motion::fixed) continue;
+    if (body.collision == CollisionChoice::none) body.collision = CollisionChoice::automatic;
+    const auto collider = colliderOf(body, scene, 0);
+    radii.push_back(collider ? collider->boundingRadius : 0);
+  }
+  return radii;
+}
+
+/// The largest distance of points of a body from where they are in the other state, in sizes of the body: twice its
+/// radius (m).
+double offsetInSizes(const BodyState& state, const BodyState& reference, double radius) {
+  const double turned = state.orientation.angularDistance(reference.orientation);
+  return ((state.position - reference.position).norm() + turned * radius) / (2 * radius);
 }
 
 /// Whether contact that may come about is found as events.
@@ -133,7 +154,8 @@ class Comparison {
         finerScene_(scene),
         runEvidence_(scene, planOf(scene)),
         finerEvidence_(scene, planOf(scene)),
-        growth_(result.disturbance) {
+        growth_(result.disturbance),
+        radii_(radiiOf(scene)) {
     result.isHeap = isHeap(scene);
     result.finerRun = result.isHeap ? "" : refine(finerScene_);
     disturbedScene_ = finerScene_;
@@ -159,7 +181,19 @@ class Comparison {
     largest_.push_back(growth_.largest());
     const Frame& reference = result_.isHeap ? disturbed : finer;
     compare(frame, reference, whole_);
+    if (!result_.horizon) findHorizon(frame, reference);
     if (!growth_.isMeaningless()) compare(frame, reference, result_.bodies);
+  }
+
+  void findHorizon(const Frame& frame, const Frame& reference) {
+    double farthest = kMaxOffset;
+    for (std::size_t i = 0; i < frame.states.size(); ++i) {
+      if (!(radii_[i] > 0)) continue;
+      const double offset = offsetInSizes(frame.states[i], reference.states[i], radii_[i]);
+      if (offset <= farthest) continue;
+      farthest = offset;
+      result_.horizon = {frame.number, frame.time, result_.bodies[i].body};
+    }
   }
 
   void finish(const Scene& scene, double end) {
@@ -187,6 +221,7 @@ class Comparison {
   std::optional<SteppedRuns> stepped_;
   RunEvidence runEvidence_, finerEvidence_;
   GrowthMeter growth_;
+  std::vector<double> radii_;                      // m, of what moves
   std::vector<double> largest_;                    // differences that the disturbance made until each frame
   std::vector<BodyError> whole_ = result_.bodies;  // errors over the whole run
 };

@@ -19,13 +19,21 @@ struct BodyError {
   double time = 0;   // s, of that error
 };
 
+/// The first frame at which points of a body are off by 1 % of its size from where a run of another accuracy has them.
+struct Horizon {
+  long frame = 0;
+  double time = 0;   // s
+  std::string body;  // the one that is off by the most of its size
+};
+
 /// What the states of a run are worth.
 struct AchievedAccuracy {
-  bool isHeap = false;                   // it has no finer run at its speed: errors are what the disturbance changes
-  std::string finerRun;                  // "accuracy 1e-08", "time step 1e-05 s"; empty for a heap
-  std::vector<BodyError> bodies;         // dynamic ones, in the order of the scene; up to meaninglessFrom, if that is
-  double disturbance = 0;                // m/s and rad/s that a third run starts with, above the scene's velocities
-  double largestDifference = 0;          // that it makes, in the measure of errors
+  bool isHeap = false;             // it has no finer run at its speed: errors are what the disturbance changes
+  std::string finerRun;            // "accuracy 1e-08", "time step 1e-05 s"; empty for a heap
+  std::vector<BodyError> bodies;   // dynamic ones, in the order of the scene; up to meaninglessFrom, if that is
+  double disturbance = 0;          // m/s and rad/s that a third run starts with, above the scene's velocities
+  double largestDifference = 0;    // that it makes, in the measure of errors
+  std::optional<Horizon> horizon;  // up to it the motion is the scene's, from it on one of many; none: all of it is
   std::optional<Divergence> divergence;  // set if it grows more than a hundred times faster than time
 
   std::string overlap, finerOverlap;            // deepest, in words; empty if nothing overlaps

@@ -59,6 +59,12 @@ std::string describe(const AchievedAccuracy& accuracy) {
       fmt::format("Checked by {}: largest |x - x_ref| / (1 + |x_ref|) of positions (m) and orientations\n", by);
   for (const BodyError& body : accuracy.bodies)
     text += fmt::format("  {:<{}}  {:8.1e}  at {:.6g} s\n", printableLine(body.body), width, body.error, body.time);
+  if (accuracy.horizon)
+    text += fmt::format(
+        "From frame {} on ({:.6g} s) the motion is one of many: \"{}\" is off by 1 % of its size. Up to there it is "
+        "the "
+        "scene's.\n",
+        accuracy.horizon->frame, accuracy.horizon->time, printableLine(accuracy.horizon->body));
   text += evidenceText(accuracy);
   if (accuracy.fault.empty()) return text + sensitivityText(accuracy);
   return text + fmt::format("A fault, not chaos: {}. No accuracy is known from there on.", accuracy.fault);

@@ -276,6 +276,10 @@ Database::Database(const std::string& path, DatabaseAccess access) : path_(path)
     execute("PRAGMA journal_mode = DELETE; PRAGMA cache_spill = OFF; PRAGMA synchronous = NORMAL");
     return;
   }
+  if (access == DatabaseAccess::extend) {
+    open(plainName(path), SQLITE_OPEN_READWRITE);
+    return;
+  }
   if (access == DatabaseAccess::unnamed) {
     std::error_code failed;
     path_ = fs::temp_directory_path(failed).string();

@@ -56,9 +56,9 @@ class Statement {
 
 /// What a file is opened for. What fails while writing throws Error(output), what fails while reading Error(usage): it
 /// is then a file named on the command line that is wrong.
-enum class DatabaseAccess { create, read, unnamed };
+enum class DatabaseAccess { create, extend, read, unnamed };
 
-/// One SQLite file. Statements must not outlive it.
+/// One SQLite file. Statements must not outlive it. extend: a file that this program has just written.
 class Database {
  public:
   /// create: a new file at `path`, where nothing may be. read: an existing file, which may come from anywhere: what is

@@ -152,6 +152,9 @@ struct TrajectoryHeader {
 /// Begins RunCost::promise of a run that became unstable and was finished then; the cause follows.
 constexpr const char* kFailedRun = "the run failed: ";
 
+/// Of `meta`: the first frame from which on the motion is one of many, or "none" if all of it is the scene's.
+constexpr const char* kHorizonKey = "horizon";
+
 /// What is known after the last step.
 struct RunCost {
   double cpuSeconds = 0;                         // integration alone

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -113,6 +114,8 @@ class TrajectoryReader {
 
   /// Everything of the table `meta`, as text.
   const std::map<std::string, std::string>& meta() const { return meta_; }
+  /// s: the time from which on the motion is one of many; none if that is not known, or never.
+  std::optional<double> horizon() const;
   /// Of all frames, as the file says; empty if the run was not finished.
   std::string stateHash() const;
   /// Of the frames that are there: reads all of them, and throws where the file says another hash.
@@ -142,6 +145,10 @@ class TrajectoryReader {
   std::map<std::string, std::string> meta_;
   std::unique_ptr<Session> session_;
 };
+
+/// Adds to the table `meta` of a whole trajectory, that this program has just written, what became known after it.
+/// Throws Error(output).
+void addToMeta(const std::string& path, const std::string& key, const std::string& text);
 
 /// Whether `path` is a SQLite file, so that a command can tell a trajectory, also one that is damaged or of another
 /// program, from a scene. Throws nothing: a file that cannot be read is none.

@@ -540,6 +540,14 @@ std::vector<Event> TrajectoryReader::events() const {
   return events;
 }
 
+std::optional<double> TrajectoryReader::horizon() const {
+  const auto text = meta_.find(kHorizonKey);
+  if (text == meta_.end()) return std::nullopt;
+  for (std::size_t frame = 0; frame < frameTimes_.size(); ++frame)
+    if (text->second == std::to_string(frame)) return frameTimes_[frame];
+  return std::nullopt;
+}
+
 std::string TrajectoryReader::stateHash() const {
   const auto found = meta_.find("stateHash");
   return found == meta_.end() ? "" : found->second;

@@ -439,4 +439,9 @@ void TrajectoryWriter::endUnfinished() noexcept {
   fs::remove(part_ + "-journal", ignored);  // where the disk was too full to take back what was half-written
 }
 
+void addToMeta(const std::string& path, const std::string& key, const std::string& text) {
+  Database database(path, DatabaseAccess::extend);
+  insertMeta(database, key, text);
+}
+
 }  // namespace cradle

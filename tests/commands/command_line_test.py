@@ -232,6 +232,18 @@ class Samples(InTemporaryFolder):
                      "2", "-o", self.path("parts"))
         self.refuses(5, ["sample_000000", "is of another chain"], "sample", self.wished(), "-n", "180", "-o", self.path("parts"))
 
+    def test_samples_and_their_trajectories_have_the_horizon_of_their_motion(self):
+        arguments = ("sample", self.wished(), "-n", "2", "-q", "-o", self.path("set"))
+        cradle(*arguments, "--simulate")
+        self.assertNotIn("horizon", self.index("set")[0])
+        self.assertEqual(cradle(*arguments, "--check-accuracy").returncode, 0)
+        for sample in self.index("set"):
+            database = sqlite3.connect(self.path(f"set/{sample['folder']}/trajectory.sqlite"))
+            (horizon,) = database.execute("select value from meta where key = 'horizon'").fetchone()
+            database.close()
+            self.assertEqual(str(sample["horizon"]), horizon)
+            self.assertTrue(horizon == "none" or 0 < int(horizon) <= 72)
+
     def test_chains_need_wishes_and_draws(self):
         self.refuses(2, ["no wishes"], "sample", self.drawn(), "-n", "9", "--chains", "3", "-o", self.path("a"))
         self.refuses(2, ["no values to draw"], "sample", self.write("plain.json", scene()), "-n", "9", "--chains", "3",

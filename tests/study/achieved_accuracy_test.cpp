@@ -72,6 +72,24 @@ TEST(AchievedAccuracy, ErrorOfAnOscillatorIsThatAgainstTheClosedForm) {
   EXPECT_EQ(accuracy.finerRun, "time step 0.0025 s");
 }
 
+// Explicit Euler falls too little, by g h t / 2 for the step h: a hundredth of the step differs by 0.99 of that, which
+// is 1 % of the ball's 0.2 m after 0.4119 s.
+TEST(AchievedAccuracy, TheHorizonIsWhereTwoRunsDifferByAHundredthOfTheSize) {
+  Scene scene = sceneOf(R"({"schema": "cradle-scene/1", "name": "fall", "duration": 1,
+    "output": {"framesPerSecond": 50},
+    "bodies": [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}]})");
+  scene.method = Method{MethodName::explicitEuler, 0.001, "test"};
+  const AchievedAccuracy accuracy = check(scene);
+  ASSERT_TRUE(accuracy.horizon.has_value());
+  EXPECT_EQ(accuracy.horizon->frame, 21);
+  EXPECT_DOUBLE_EQ(accuracy.horizon->time, 0.42);
+  EXPECT_EQ(accuracy.horizon->body, "ball");
+}
+
+TEST(AchievedAccuracy, AMotionThatIsTheScenesHasNoHorizon) {
+  EXPECT_FALSE(check(fallingSpheres()).horizon.has_value());
+}
+
 TEST(AchievedAccuracy, AnOscillatorIsNotChaotic) {
   const AchievedAccuracy accuracy = check(oscillator(10, 3));
   EXPECT_FALSE(accuracy.divergence);
