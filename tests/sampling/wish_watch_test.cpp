@@ -1,5 +1,6 @@
 #include "sampling/wish_watch.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -170,6 +171,39 @@ TEST_F(Wishes, FindABallToGoToTheSideOfAnEdgeThatItHit) {
   for (long i = 0; i < kThrows; ++i) right += simulateWishes(sampler.sample(2, i).loaded.scene).outcomes[0].isMet;
   const double expected = std::erfc(-0.5 / std::numbers::sqrt2) / 2;
   EXPECT_NEAR(right / double(kThrows), expected, 4 * std::sqrt(expected * (1 - expected) / kThrows));
+}
+
+/// Four rows of pegs, `side` 1 or -1 to mirror all, a ball that comes from `x` (m) above them, and a wish for it to be
+/// in the right, or the left, half of the floor in the end.
+std::string pegBoard(double side, double x) {
+  std::string entries;
+  for (int row = 0; row < 4; ++row)
+    for (int peg = 0; peg < 3; ++peg)
+      entries += fmt::format(
+          R"({{"name": "peg{}{}", "motion": "static", "material": "smooth", "shape": {{"sphere": {{"radius": 0.05}}}},
+              "position": [{}, {}, 0]}}, )",
+          row, peg, side * (0.4 * (peg - 1) + 0.2 * (row % 2) + 0.01 * row), 2 - 0.3 * row);
+  return R"("duration": 1.5, )" + bodies(entries + ball(fmt::format(R"("position": [{}, 2.4, 0])", side * x))) +
+         fmt::format(
+             R"(, "wishes": [{{"body": "ball", "inside": {{"min": [{}, -9, -9], "max": [{}, 9, 9]}}, "deviation": 1}}])",
+             side > 0 ? 0 : -9, side > 0 ? 9 : 0);
+}
+
+// Rounding, 1e-16, grows at each of at most ten bounces by less than 4 d / r, d the way between pegs: 1e-16 * 12^10 =
+// 6e-6.
+TEST_F(Wishes, AreMetByMirroredMotionsOnAMirroredBoard) {
+  RandomStream random(8);
+  int met = 0;
+  constexpr int kBalls = 60;
+  for (int i = 0; i < kBalls; ++i) {
+    const double x = 0.4 * (random.nextUniform() - 0.5);
+    const WishOutcome right = motionOf(pegBoard(1, x)).outcomes.at(0), left = motionOf(pegBoard(-1, x)).outcomes.at(0);
+    EXPECT_NEAR(right.distance, left.distance, 1e-5) << x;
+    EXPECT_TRUE(right.isMet == left.isMet || right.distance < 1e-5) << x;
+    met += right.isMet;
+  }
+  EXPECT_GT(met, 5);
+  EXPECT_LT(met, kBalls - 5);
 }
 
 }  // namespace
