@@ -90,6 +90,12 @@ std::vector<WishOutcome> outcomesOf(const std::string& trajectory, const Scene& 
   return watch.outcomes();
 }
 
+/// What was not asked for now, but when the sample was made.
+void keepKnown(const SampleRecord& found, SampleRecord& record) {
+  record.horizon = found.horizon, record.warnings = found.warnings, record.stateHash = found.stateHash;
+  if (record.pictures.empty()) record.pictures = found.pictures;
+}
+
 }  // namespace
 
 bool DataSet::isWhole(const SampleRecord& found, const SampleRecord& wanted) const {
@@ -114,9 +120,9 @@ void DataSet::simulate(const fs::path& folder, const Scene& scene, SampleRecord&
     if (!scene.wishes.empty()) record.wishes = outcomesOf(trajectory, scene);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::unstable) throw;
-    record.failure = error.what();
+    record.failure = error.what(), record.wishes = unmet(scene.wishes.size());
   }
-  record.warnings = warnings.texts();
+  if (!warnings.texts().empty()) record.warnings = warnings.texts();
 }
 
 void DataSet::render(const fs::path& folder) const {
@@ -138,14 +144,14 @@ void DataSet::make(const SampleRecord& asked, const DrawnScene& drawn) const {
   const auto found = readRecord(folder.string());
   if (found) requireSame(*found, record, folder.string());
   if (found && isWhole(*found, record)) return;
+  if (found) keepKnown(*found, record);
   makeFolder(folder.string());
   const bool hasScene = holdsText((folder / kSceneFile).string(), text);
   if (!found) clearUnfinished(folder, hasScene);
   if (!hasScene) writeWholeFile((folder / kSceneFile).string(), text);
   if (isRepeated) {
-    const std::string trajectory = (folderOf(record.chain->sameAs) / kKeptTrajectory).string();
-    record.stateHash = stateHashOf(trajectory);
-    if (options_.findsHorizon) record.horizon = horizonIn(trajectory);
+    const auto same = DataSet::found(record.chain->sameAs);
+    if (same) record.stateHash = same->stateHash, record.horizon = same->horizon, record.failure = same->failure;
   } else {
     if (options_.simulates) simulate(folder, drawn.loaded.scene, record);
     if (record.failure)

@@ -52,12 +52,14 @@ DrawnScene sceneOf(const SceneSampler& sampler, const UniformNumbers& numbers) {
 
 }  // namespace
 
-void requireChains(const SceneSampler& sampler, std::uint64_t seed) {
+void requireChains(const SceneSampler& sampler) {
   if (sampler.places().empty())
     throw Error(ErrorKind::usage, "--chains", "the scene has no values to draw; a chain needs some to change");
-  if (sampler.sample(seed, 0).loaded.scene.wishes.empty())
-    throw Error(ErrorKind::usage, "--chains",
-                "the scene has no wishes, which chains sample for; leave --chains out, or add wishes to the scene");
+  if (!sampler.hasWishes())
+    throw Error(
+        ErrorKind::usage, "--chains",
+        "the scene has no wishes, which chains sample for, or draws them; leave --chains out, or add wishes to the "
+        "scene");
 }
 
 void SampleChain::make(const SampleRange& range, const std::function<void()>& tell) const {

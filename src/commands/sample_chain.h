@@ -11,8 +11,8 @@ struct SampleRange {
   long first, end;
 };
 
-/// Throws Error(usage) if a scene has no draws, or no wishes: then chains sample nothing.
-void requireChains(const SceneSampler& sampler, std::uint64_t seed);
+/// Throws Error(usage) if a scene has no draws, or no wishes but such as are drawn: then chains sample nothing.
+void requireChains(const SceneSampler& sampler);
 
 /// A Markov chain over the draws of a scene, for its wishes, of which each state is a sample. Chain c begins with the
 /// sample c that is drawn without wishes.

@@ -172,7 +172,10 @@ std::vector<std::vector<double>> seriesOf(const std::vector<const SampleRecord*>
       for (std::size_t i = 0; i < ofPlace.size(); ++i) numbers[{place, i}].push_back(ofPlace[i]);
   }
   std::vector<std::vector<double>> series;
-  if (std::all_of(likelihoods.begin(), likelihoods.end(), [](double value) { return std::isfinite(value); }))
+  // All the same where each state meets its wishes wholly, which says nothing of how a chain moves.
+  const auto isOther = [&](double value) { return value != likelihoods.front(); };
+  if (std::all_of(likelihoods.begin(), likelihoods.end(), [](double value) { return std::isfinite(value); }) &&
+      std::any_of(likelihoods.begin(), likelihoods.end(), isOther))
     series.push_back(std::move(likelihoods));
   for (auto& [place, values] : numbers)
     if (values.size() == chain.size()) series.push_back(std::move(values));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "commands/data_set.h"
+#include "commands/film_drawer.h"
 #include "commands/frame_folder.h"
 #include "commands/sample_chain.h"
 #include "commands/sample_folder.h"
@@ -19,6 +20,7 @@
 #include "core/output_path.h"
 #include "core/progress.h"
 #include "core/worker_processes.h"
+#include "truth/passes.h"
 
 namespace cradle {
 namespace {
@@ -129,14 +131,18 @@ void sampleScenes(const std::string& scene, const std::string& folder, const Sam
   const fs::path tar = fs::path(folder) / tarNameOf(options);
   if (packs) requireNoTar(tar);
   const SceneSampler sampler(scene, pictures.assetRoot);
-  if (options.chains) requireChains(sampler, options.seed);
-  if (work.units() > 0) sampler.sample(options.seed, work.firstUnit());  // what is wrong shows before a folder is made
+  if (options.chains) requireChains(sampler);
+  if (work.units() > 0) {  // what is wrong shows before a folder is made
+    const DrawnScene first = sampler.sample(options.seed, work.firstUnit());
+    if (pictures.passes) parsePasses(*pictures.passes);
+    if (options.renders) PictureOrder(pictures, first.loaded.scene);
+  }
   const ResultFolder made(folder);
   const FolderLock lock(folder, FolderUse::shared);
 
   const DataSet set(sampler, folder, options, pictures);
   const SampleRange range = work.samples();
-  {
+  try {
     Progress progress("Sampling", "samples", std::max(1L, range.end - range.first), quiet);
     shareAmongProcesses(
         options.processes, work.units(),
@@ -153,6 +159,9 @@ void sampleScenes(const std::string& scene, const std::string& folder, const Sam
           tell();
         },
         [&](long done) { progress.update(done); });
+  } catch (const Error&) {
+    writeIndex(folder, scene, {});  // of those that are there
+    throw;
   }
   std::vector<SampleRecord> records;
   for (long number = range.first; number < range.end; ++number) {

@@ -16,6 +16,8 @@
 #include <optional>
 #include <thread>
 
+#include "commands/frame_folder.h"
+#include "commands/sample_chain.h"
 #include "commands/sample_folder.h"
 #include "commands/simulate_scene.h"
 #include "core/console.h"
@@ -34,12 +36,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr long kPicturesOfATask = 60;      // some 30 s at half a second each
-constexpr double kMinTaskTime = 30;        // s: a scheduler takes a second or so to start one
-constexpr long kMaxTasks = 100'000;        // of a stage, where no scheduler says less
-constexpr long kUsualMaxArraySize = 1001;  // of Slurm, unless it is configured; one more than the tasks
+constexpr long kPicturesOfATask = 60;            // some 30 s at half a second each
+constexpr double kMinTaskTime = 30;              // s: a scheduler takes a second or so to start one
+constexpr long kMaxTasks = 100'000;              // of a stage, where no scheduler says less
+constexpr long kUsualMaxArraySize = 1001;        // of Slurm, unless it is configured; one more than the tasks
+constexpr std::uint64_t kMaxScript = 1'000'000;  // bytes
 constexpr const char* kRunScript = "run.sh";
 constexpr const char* kCheck = "check";  // the stage
+// Beside the scripts: a sample that is made to see how long one takes; what becomes a film, and what it is drawn from.
+constexpr const char *kPilot = "pilot", *kFrames = "frames", *kTrajectory = "trajectory.sqlite";
 
 /// A word of a shell command.
 std::string quoted(const std::string& word) {
@@ -74,8 +79,10 @@ class CommandWords {
   std::optional<std::string> take(const std::vector<std::string>& names) {
     for (auto word = options_.begin(); word != options_.end(); ++word)
       for (const std::string& name : names) {
-        if (word->starts_with(name + "=")) {
-          const std::string value = word->substr(name.size() + 1);
+        const bool isShort = name.size() == 2;  // its value may follow at once
+        const std::string before = isShort ? name : name + "=";
+        if (word->starts_with(before) && word->size() > before.size()) {
+          const std::string value = word->substr(before.size());
           options_.erase(word);
           return value;
         }
@@ -130,7 +137,8 @@ struct JobPlan {
   std::string folder;
   std::string inputHash;
   std::vector<JobStage> stages;
-  long processors = 1;  // of a task
+  long processors = 1;   // of a task
+  std::string pictures;  // the folder of the user that they go to; empty if there is none
 };
 
 std::string scriptFile(std::size_t stage, const JobStage& of) {
@@ -217,6 +225,15 @@ void addSimulation(const std::string& scene, const std::string& trajectory, cons
   plan.stages.push_back({"simulate", 1, programCall(joined({"simulate", scene, "-o", trajectory}, options)) + "\n"});
 }
 
+/// What printf makes the name of a file of each frame of, for one kind of those that are drawn.
+std::string patternOf(const CommandWords& words) {
+  const std::string passes = shownValue(words, {"--passes"}).value_or("rgb");
+  const std::string first = passes.substr(0, passes.find(','));
+  if (passes == "all" || ("," + passes + ",").find(",rgb,") != passes.npos) return "frame_%06d.png";
+  if (shownValue(words, {"--pass-format"}) == "exr") return kPassesKind + "_%06d.exr";
+  return first + "_%06d.npy";
+}
+
 void planPictures(const std::string& scheduler, const std::string& input, const std::string& output, bool encodes,
                   CommandWords& words, JobPlan& plan) {
   words.refuse(
@@ -226,8 +243,8 @@ void planPictures(const std::string& scheduler, const std::string& input, const 
   const Film film = filmOf(input, assetRoot);
   if (encodes && film.hasTitleCard)
     throw Error(ErrorKind::usage, input, "has a title card, which only `cradle video` itself puts before a film");
-  const std::string trajectory = film.isTrajectory ? input : (fs::path(plan.folder) / "trajectory.sqlite").string();
-  const std::string frames = encodes ? (fs::path(plan.folder) / "frames").string() : output;
+  const std::string trajectory = film.isTrajectory ? input : (fs::path(plan.folder) / kTrajectory).string();
+  const std::string frames = encodes ? (fs::path(plan.folder) / kFrames).string() : output;
   if (!film.isTrajectory) {
     addSimulation(input, trajectory,
                   assetRoot.empty() ? std::vector<std::string>{} : std::vector{std::string("--asset-root"), assetRoot},
@@ -238,16 +255,22 @@ void planPictures(const std::string& scheduler, const std::string& input, const 
   const std::string draw =
       programCall(joined({"render", trajectory, "-o", frames, "--skip-existing"}, words.options()));
   plan.stages.push_back({"render", tasks, fmt::format("{} --shard \"$task/{}\"\n", draw, tasks)});
-  plan.stages.push_back(checkStage(frames, "frame_%06d.png", 0, film.frames));
+  plan.stages.push_back(checkStage(frames, patternOf(words), 0, film.frames));
+  if (!encodes) plan.pictures = output;
   if (encodes)
     plan.stages.push_back({"encode", 1,
                            fmt::format("{}\n", programCall({"encode", frames, "-o", output, "--frames-per-second",
                                                             fmt::format("{}", film.framesPerSecond)}))});
 }
 
+std::string firstLineOf(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
 /// s: wall time of one sample, which is made and thrown away.
 double timeOfASample(const std::string& scene, const CommandWords& words, long count, const std::string& folder) {
-  const std::string pilot = (fs::path(folder) / "pilot").string();
+  const std::string pilot = (fs::path(folder) / kPilot).string();
+  fs::remove_all(pilot);  // of a call that was ended
   std::vector<std::string> command = {programPath(), "sample", scene, "-o", pilot, "-n", std::to_string(count)};
   command = joined(joined(command, words.options()), {"--shard", fmt::format("1/{}", count), "-q"});
   const auto start = std::chrono::steady_clock::now();
@@ -256,9 +279,56 @@ double timeOfASample(const std::string& scene, const CommandWords& words, long c
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   fs::remove_all(pilot);
   if (code != 0 && code != static_cast<int>(ErrorKind::unstable))
-    throw Error(static_cast<ErrorKind>(code), "",
-                fmt::format("a first sample, to see how long one takes, failed: {}", sample.standardError()));
+    throw Error(
+        static_cast<ErrorKind>(code), "",
+        fmt::format("a first sample, to see how long one takes, failed: {}", firstLineOf(sample.standardError())));
   return seconds;
+}
+
+/// The script of a stage: $task is its first argument, or what Slurm says.
+std::string stageText(const JobPlan& plan, std::size_t number) {
+  const JobStage& stage = plan.stages[number];
+  const std::string log = quoted((fs::path(plan.folder) / fmt::format("{}_{}_", number + 1, stage.name)).string());
+  std::string text = "#!/bin/sh\n";
+  // Without --time, account and partition: those are of the site, which SBATCH_TIMELIMIT, SBATCH_ACCOUNT and
+  // SBATCH_PARTITION name.
+  text += fmt::format("#SBATCH --job-name=cradle-{}\n#SBATCH --requeue\n#SBATCH --open-mode=append\n", stage.name);
+  text += fmt::format("#SBATCH --ntasks=1\n#SBATCH --cpus-per-task={}\n#SBATCH --output=/dev/null\n", plan.processors);
+  if (stage.tasks > 1) text += fmt::format("#SBATCH --array=1-{}\n", stage.tasks);
+  return text + fmt::format("task={}\nexec >>{}\"$task.log\" 2>&1\n{}",
+                            stage.tasks > 1 ? "${1:-$SLURM_ARRAY_TASK_ID}" : "1", log, stage.script);
+}
+
+struct JobScript {
+  std::string path, text;
+};
+
+bool areThere(const std::vector<JobScript>& scripts) {
+  return std::all_of(scripts.begin(), scripts.end(),
+                     [](const JobScript& script) { return holdsText(script.path, script.text); });
+}
+
+/// Makes the samples, and looks whether all are there.
+std::vector<JobStage> sampleStages(const std::vector<std::string>& make, const std::string& output, bool packs,
+                                   long tasks, long count) {
+  // A sample that becomes unstable is told in its record, and is there.
+  const std::string script = fmt::format("{} --shard \"$task/{}\" || [ $? = {} ]\n", programCall(make), tasks,
+                                         static_cast<int>(ErrorKind::unstable));
+  if (!packs) return {{"sample", tasks, script}, checkStage(output, "sample_%06d/sample.json", 0, count)};
+  return {{"sample", tasks,
+           fmt::format("[ -e {}/samples_\"$task\"_of_{}.tar ] || {{\n{}}}\n", quoted(output), tasks, script)},
+          checkStage(output, fmt::format("samples_%d_of_{}.tar", tasks), 1, tasks)};
+}
+
+/// Of the samples' stage of the jobs in a folder; 1 if there are none.
+long tasksThatAreThere(const std::string& folder) {
+  const std::string path = (fs::path(folder) / "1_sample.sh").string();
+  if (!fs::exists(path)) return 1;
+  const std::string text = readFile(path, kMaxScript, ErrorKind::output), key = "--array=1-";
+  const auto found = text.find(key);
+  long tasks = 1;
+  if (found != text.npos) std::from_chars(text.data() + found + key.size(), text.data() + text.size(), tasks);
+  return std::max(1L, tasks);
 }
 
 void planSamples(const std::string& scheduler, const std::string& scene, const std::string& output, CommandWords& words,
@@ -268,34 +338,42 @@ void planSamples(const std::string& scheduler, const std::string& scene, const s
   const auto format = words.take({"--format"});
   const auto chains = words.take({"--chains"});
   plan.processors = wholeNumber("-j", shownValue(words, {"-j", "--processes"}), 1);
+  if (format && format != "folder" && format != "tar")
+    throw Error(ErrorKind::usage, "--format", fmt::format("found \"{}\"; allowed are folder and tar", *format));
+  const long units = wholeNumber("--chains", chains, count);
+  if (units > count)
+    throw Error(ErrorKind::usage, "--chains",
+                fmt::format("found {}; allowed are 1 to {}, the number of samples", units, count));
   const SceneSampler sampler(scene);
-  if (!quiet) show(stderr, "Making one sample, to see how long they take\n");
-  const double time = timeOfASample(scene, words, count, plan.folder);
-  const long most = std::min(maxTasksOf(scheduler), chains ? wholeNumber("--chains", chains, 1) : count);
-  const long tasks =
-      tasksFor(time * static_cast<double>(count) / static_cast<double>(plan.processors), kMinTaskTime, most);
+  if (chains) requireChains(sampler);
   std::vector<std::string> make = joined({"sample", scene, "-o", output, "-n", std::to_string(count)}, words.options());
   if (chains) make = joined(make, {"--chains", *chains});
   if (format) make = joined(make, {"--format", *format});
-  // A sample that becomes unstable is told in its record, and is there.
-  plan.stages.push_back({"sample", tasks,
-                         fmt::format("{} --shard \"$task/{}\" || [ $? = {} ]\n", programCall(make), tasks,
-                                     static_cast<int>(ErrorKind::unstable))});
-  if (format != "tar") {
-    plan.stages.push_back(checkStage(output, "sample_%06d/sample.json", 0, count));
-    return;
-  }
-  plan.stages.back().script = fmt::format("[ -e {}/samples_\"$task\"_of_{}.tar ] || {{\n{}}}\n", quoted(output), tasks,
-                                          plan.stages.back().script);
-  plan.stages.push_back(checkStage(output, fmt::format("samples_%d_of_{}.tar", tasks), 1, tasks));
+  const auto setTasks = [&](long tasks) { plan.stages = sampleStages(make, output, format == "tar", tasks, count); };
+  // The time of a sample differs from call to call: the same jobs as those that are there are in as many tasks.
+  setTasks(tasksThatAreThere(plan.folder));
+  if (areThere({{(fs::path(plan.folder) / scriptFile(0, plan.stages[0])).string(), stageText(plan, 0)}})) return;
+  if (!quiet) show(stderr, "Making one sample, to see how long they take\n");
+  const double time = timeOfASample(scene, words, count, plan.folder);
+  setTasks(tasksFor(time * static_cast<double>(count) / static_cast<double>(plan.processors), kMinTaskTime,
+                    std::min(maxTasksOf(scheduler), units)));
 }
 
 bool isOfJobs(const std::string& name) {
-  return name.ends_with(".sh") || name.ends_with(".log") || name.starts_with("trajectory.sqlite") || name == "frames";
+  if (name == kRunScript || name == kPilot || name == kFrames || name.starts_with(kTrajectory)) return true;
+  constexpr std::array kStages = {"_simulate", "_render", "_sample", kCheck, "_encode"};
+  const bool isOfStage = name.size() > 1 && std::any_of(kStages.begin(), kStages.end(), [&](const std::string& stage) {
+                           return name.substr(1).starts_with(stage[0] == '_' ? stage : "_" + stage);
+                         });
+  return isOfStage && (name.ends_with(".sh") || name.ends_with(".log"));
 }
 
-/// Removes what earlier jobs have left in their folder: they were others.
+/// Removes what earlier jobs have left in their folder: they were others. Throws Error(output) if it is not theirs.
 void clearJobs(const fs::path& folder) {
+  if (!fs::exists(folder / kRunScript) && !fs::is_empty(folder))
+    throw Error(ErrorKind::output, folder.string(),
+                "holds files of other origin, where scripts of jobs are to be written; move them away, or name another "
+                "output");
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (isOfJobs(entry.path().filename().string())) files.push_back(entry.path());
@@ -313,7 +391,10 @@ JobPlan planOf(const SubmitOptions& options, bool quiet, std::optional<ResultFol
   const std::string input = absolute(command[1]);
   CommandWords words(command);
   const auto output = words.take({"-o", "--output"});
-  if (!output) throw Error(ErrorKind::usage, command[0], "-o is missing; say where its results go");
+  if (!output || output->empty())
+    throw Error(ErrorKind::usage, command[0], "-o is missing or empty; say where its results go");
+  if (command[1].empty()) throw Error(ErrorKind::usage, command[0], "its input is empty; name a file");
+  words.refuse({"-o", "--output"}, "is there twice; say once where its results go");
   const fs::path target = fs::path(absolute(*output) + "/").parent_path();
   words.makeAbsolute("--shaders"), words.makeAbsolute("--asset-root");
   JobPlan plan;
@@ -330,20 +411,6 @@ JobPlan planOf(const SubmitOptions& options, bool quiet, std::optional<ResultFol
     planPictures(options.scheduler, input, target.string(), command[0] == "video", words, plan);
   }
   return plan;
-}
-
-/// The script of a stage: $task is what the scheduler says, or its first argument.
-std::string stageText(const JobPlan& plan, std::size_t number) {
-  const JobStage& stage = plan.stages[number];
-  const std::string log = quoted((fs::path(plan.folder) / fmt::format("{}_{}_", number + 1, stage.name)).string());
-  std::string text = "#!/bin/sh\n";
-  // Without --time, account and partition: those are of the site, which SBATCH_TIMELIMIT, SBATCH_ACCOUNT and
-  // SBATCH_PARTITION name.
-  text += fmt::format("#SBATCH --job-name=cradle-{}\n#SBATCH --requeue\n#SBATCH --open-mode=append\n", stage.name);
-  text += fmt::format("#SBATCH --ntasks=1\n#SBATCH --cpus-per-task={}\n#SBATCH --output=/dev/null\n", plan.processors);
-  if (stage.tasks > 1) text += fmt::format("#SBATCH --array=1-{}\n", stage.tasks);
-  return text +
-         fmt::format("task=${{SLURM_ARRAY_TASK_ID:-${{1:-1}}}}\nexec >>{}\"$task.log\" 2>&1\n{}", log, stage.script);
 }
 
 /// Starts the stages one after the other, and tells which has not come to its end.
@@ -364,9 +431,15 @@ std::string runText(const std::string& scheduler, const JobPlan& plan) {
       continue;
     }
     const std::string numbers = fmt::format("seq {} | ", stage.tasks);
-    text += scheduler == "parallel" ? fmt::format("{}parallel --joblog {}_{}.joblog.log --resume-failed sh ./{} {{}}",
-                                                  numbers, i + 1, stage.name, script)
-                                    : fmt::format("{}xargs -P \"$(nproc)\" -I{{}} sh ./{} {{}}", numbers, script);
+    const std::string beside = fmt::format("\"$((($(nproc) + {}) / {}))\"", plan.processors - 1, plan.processors);
+    const std::string call = fmt::format("sh {} {{}}", quoted((fs::path(plan.folder) / script).string()));
+    if (stage.tasks == 1)  // where it ends it is done, whatever a log says
+      text += fmt::format("sh ./{}", script);
+    else if (scheduler == "parallel")
+      text += fmt::format("{}parallel -j {} --joblog {}_{}.joblog.log --resume-failed {}", numbers, beside, i + 1,
+                          stage.name, quoted(call));
+    else
+      text += fmt::format("{}xargs -P {} -I{{}} {}", numbers, beside, call);
     // What is missing was made once, as the logs of GNU parallel say: all tasks look again for what they lack.
     const bool forgets = scheduler == "parallel" && stage.name == kCheck;
     text += fmt::format(
@@ -376,6 +449,28 @@ std::string runText(const std::string& scheduler, const JobPlan& plan) {
         forgets ? "rm -f ./*.joblog.log; " : "", stage.name, i + 1, stage.name);
   }
   return text;
+}
+
+/// Those of the stages, and run.sh behind them.
+std::vector<JobScript> scriptsOf(const std::string& scheduler, const JobPlan& plan) {
+  const fs::path folder = plan.folder;
+  std::vector<JobScript> scripts;
+  for (std::size_t i = 0; i < plan.stages.size(); ++i)
+    scripts.push_back({(folder / scriptFile(i, plan.stages[i])).string(), stageText(plan, i)});
+  scripts.push_back({(folder / kRunScript).string(), runText(scheduler, plan)});
+  return scripts;
+}
+
+/// Jobs leave pictures that are there: those of another scene, or of other options, would be among theirs.
+void requireNoPictures(const std::string& folder) {
+  std::error_code missing;
+  if (folder.empty() || !fs::is_directory(folder, missing)) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (parseFrameFile(entry.path().filename().string()))
+      throw Error(
+          ErrorKind::output, folder,
+          "holds pictures that other jobs, or none, have drawn, and jobs leave what is there; name a new folder, "
+          "or remove it");
 }
 
 void requireScheduler(const std::string& scheduler) {
@@ -390,11 +485,13 @@ void submitCommand(const SubmitOptions& options, bool quiet) {
   std::optional<ResultFolder> made;
   const JobPlan plan = planOf(options, quiet, made);
   const fs::path folder = plan.folder;
-  const std::string run = (folder / kRunScript).string(), text = runText(options.scheduler, plan);
-  if (!holdsText(run, text)) clearJobs(folder);
-  for (std::size_t i = 0; i < plan.stages.size(); ++i)
-    writeWholeFile((folder / scriptFile(i, plan.stages[i])).string(), stageText(plan, i));
-  writeWholeFile(run, text);
+  const std::vector<JobScript> scripts = scriptsOf(options.scheduler, plan);
+  if (!areThere(scripts)) {
+    requireNoPictures(plan.pictures);
+    clearJobs(folder);
+    for (const JobScript& script : scripts) writeWholeFile(script.path, script.text);
+  }
+  const std::string& run = scripts.back().path;
   for (const JobStage& stage : plan.stages)
     show("{}: {} task{}\n", stage.name, stage.tasks, stage.tasks == 1 ? "" : "s");
   if (!options.starts) return show("start them with: sh {}\n", quoted(run));

@@ -92,8 +92,8 @@ bool MetropolisChain::step(long number) {
 
 double autocorrelationTime(const std::vector<double>& series) {
   const auto [least, most] = std::minmax_element(series.begin(), series.end());
-  if (series.size() < 4 || *least == *most) return 1;
   const double count = static_cast<double>(series.size());
+  if (series.empty() || *least == *most) return std::max(count, 1.0);
   double mean = 0;
   for (const double value : series) mean += value / count;
   std::vector<double> deviations;

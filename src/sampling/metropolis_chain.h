@@ -49,7 +49,7 @@ class MetropolisChain {
 
 /// Steps of a stationary series that are worth one independent one: 1 + 2 sum of autocorrelations, up to where the sum
 /// of two neighbours is no longer positive (C. J. Geyer, "Practical Markov chain Monte Carlo", Statistical Science 7,
-/// 1992, initial positive sequence). 1 for a series that never changes, or of fewer than four. O(length x result).
+/// 1992, initial positive sequence). The length for a series that never changes. O(length x result).
 double autocorrelationTime(const std::vector<double>& series);
 
 }  // namespace cradle

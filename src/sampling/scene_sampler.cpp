@@ -129,6 +129,14 @@ std::optional<DrawnScene> SceneSampler::possibleSceneOf(const UniformSource& uni
   return scene;
 }
 
+bool SceneSampler::hasWishes() const {
+  const JsonValue* wishes = memberOf(document_, "wishes");
+  const auto* list = wishes == nullptr ? nullptr : std::get_if<JsonValue::Array>(&wishes->content);
+  return list != nullptr && !list->empty() && std::none_of(list->begin(), list->end(), [](const JsonValue& wish) {
+           return memberOf(wish, "draw") != nullptr;
+         });
+}
+
 std::string textInFolder(const DrawnScene& drawn, const std::string& scenePath, const std::string& folder) {
   JsonValue document = drawn.document;
   const fs::path from = fs::path(scenePath).parent_path();

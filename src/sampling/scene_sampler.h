@@ -38,6 +38,9 @@ class SceneSampler {
   /// The scene of some numbers; none if bodies of entries with draws overlap others. Throws as sceneOf does.
   std::optional<DrawnScene> possibleSceneOf(const UniformSource& uniform) const;
 
+  /// Whether each of its scenes has wishes, and as many.
+  bool hasWishes() const;
+
   /// JSON pointers of all draws.
   std::vector<std::string> places() const { return drawPlaces(document_); }
 

@@ -39,7 +39,7 @@ std::optional<std::size_t> indexOf(const std::vector<int>& bodies, int body) {
 WishWatch::WishWatch(const Scene& scene)
     : scene_(scene),
       assembly_(assemble(scene, wholeScene(scene))),
-      outcomes_(scene.wishes.size(), WishOutcome{kInfinity, false}),
+      outcomes_(unmet(scene.wishes.size())),
       timeErrors_(scene.wishes.size(), kInfinity) {
   for (std::size_t i = 0; i < scene.wishes.size(); ++i)
     if (const auto* contact = std::get_if<ContactWish>(&scene.wishes[i].kind))
@@ -133,6 +133,10 @@ double logLikelihood(const std::vector<Wish>& wishes, const std::vector<WishOutc
   return -sum / 2;
 }
 
+std::vector<WishOutcome> unmet(std::size_t wishes) {
+  return std::vector<WishOutcome>(wishes, WishOutcome{kInfinity, false});
+}
+
 WishedMotion simulateWishes(const Scene& scene) {
   WishWatch watch(scene);
   SimulationSink sink{[&](const Frame& frame) { watch.note(frame); }, [&](const Event& event) { watch.note(event); },
@@ -142,7 +146,7 @@ WishedMotion simulateWishes(const Scene& scene) {
     simulate(scene, sink);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::unstable) throw;
-    return {watch.outcomes(), -kInfinity};
+    return {unmet(scene.wishes.size()), -kInfinity};
   }
   return {watch.outcomes(), logLikelihood(scene.wishes, watch.outcomes())};
 }

@@ -59,8 +59,11 @@ double logLikelihood(const std::vector<Wish>& wishes, const std::vector<WishOutc
 /// What came of the wishes of a scene that was simulated for them alone.
 struct WishedMotion {
   std::vector<WishOutcome> outcomes;
-  double logLikelihood = 0;  // -infinity if the run became unstable: it cannot be
+  double logLikelihood = 0;  // -infinity if the run became unstable: it cannot be, and meets nothing
 };
+
+/// Those of a motion that is none.
+std::vector<WishOutcome> unmet(std::size_t wishes);
 
 /// Simulates a scene that has passed refuseUnsupported. Throws what simulating throws, but Error(unstable).
 WishedMotion simulateWishes(const Scene& scene);

@@ -101,6 +101,51 @@ class Submitted(InTemporaryFolder):
         self.assertIn("simulate has not come to its end", ended.stderr)
         self.assertIn("/duration", self.script("frames.jobs/1_simulate_1.log"))
 
+    def test_other_options_are_other_jobs(self):
+        path = self.write("a.json", scene(duration=0.2))
+        film = lambda size: self.submit("local", "--run", "video", path, "-o", self.path("a.mp4"), "--size", size)
+        self.assertEqual(film("64x36").returncode, 0)
+        first = content(self.path("a.mp4"))
+        self.assertEqual(film("128x72").returncode, 0)
+        self.assertNotEqual(content(self.path("a.mp4")), first)
+        render = ("submit", "local", "--run", "render", path, "-o", self.path("frames"), "--size")
+        self.assertEqual(cradle(*render, "64x36").returncode, 0)
+        self.assertEqual(cradle(*render, "64x36").returncode, 0)
+        self.refuses(5, ["frames", "holds pictures"], *render, "128x72")
+
+    def test_passes_without_pictures_are_whole(self):
+        path = self.write("a.json", scene(duration=0.1))
+        for more in (("--passes", "depth,normal"), ("--passes", "depth", "--pass-format", "exr")):
+            folder = self.path(more[1] + more[-1])
+            result = self.submit("local", "--run", "render", path, "-o" + folder, *more)
+            self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_jobs_of_parallel_are_done_again_where_their_results_are_gone(self):
+        bin = self.path("bin")  # runs each task, but those that its log has
+        os.mkdir(bin)
+        with open(os.path.join(bin, "parallel"), "w", encoding="utf-8") as file:
+            file.write('#!/bin/sh\nfor log; do case $log in *.joblog.log) break;; esac; done\nfor call; do :; done\n'
+                       'while read -r n; do grep -qx "$n" "$log" 2>/dev/null || '
+                       '{ sh -c "$(echo "$call" | sed "s/{}/$n/")" && echo "$n" >> "$log"; } || exit 1; done\n')
+        os.chmod(os.path.join(bin, "parallel"), 0o755)
+        environment = {**os.environ, "PATH": bin + ":" + os.environ["PATH"], "SLURM_ARRAY_TASK_ID": "2"}  # as in another job
+        path = self.write("a.json", scene(duration=2.1))
+        run = lambda: cradle("submit", "parallel", "--run", "render", path, "-o", self.path("frames"), env=environment).returncode
+        self.assertEqual(run(), 0)
+        shutil.rmtree(self.path("frames"))
+        self.assertEqual(run(), 5)  # what is missing is told, and made the next time
+        self.assertEqual(run(), 0)
+        self.assertEqual(len(os.listdir(self.path("frames"))), 126)
+
+    def test_files_of_others_stay(self):
+        path = self.write("a.json", scene())
+        os.mkdir(self.path("f.jobs"))
+        self.write("f.jobs/notes.log", "mine")
+        self.refuses(5, ["notes.log"], "submit", "local", "render", path, "-o", self.path("f"))
+        os.rename(self.path("f.jobs/notes.log"), self.path("f.jobs/trajectory.sqlite"))
+        self.refuses(5, ["other origin"], "submit", "local", "render", path, "-o", self.path("f"))
+        self.assertEqual(content(self.path("f.jobs/trajectory.sqlite")), b"mine")
+
     def test_slurm_has_arrays_that_wait_for_each_other(self):
         path = self.write("a.json", scene(duration=3))
         bin = self.path("bin")  # a cluster's commands, as far as they are used
@@ -243,6 +288,27 @@ class Samples(InTemporaryFolder):
             database.close()
             self.assertEqual(str(sample["horizon"]), horizon)
             self.assertTrue(horizon == "none" or 0 < int(horizon) <= 72)
+
+    def test_motions_that_cannot_be_meet_no_wish(self):
+        unstable = {"bodies": [self.GROUND, {**self.DROPPED, "angularVelocity": [0, 0, {"draw": {"uniform": [1, 2]}}]}],
+                    "method": {"name": "explicitEuler", "timeStep": 0.1},
+                    "springs": [{"bodyA": "box", "anchorB": [0, 9, 0], "stiffness": 1e9, "restLength": 1}], "duration": 2}
+        path = self.wished(**unstable)
+        self.assertEqual(cradle("sample", path, "-n", "4", "-o", self.path("a")).stdout, "0 of 4 samples meet all wishes\n")
+        result = cradle("sample", path, "-n", "4", "-o", self.path("b"), "--simulate")
+        self.assertEqual((result.returncode, result.stdout), (7, "0 of 4 samples meet all wishes\n"))
+        chain = cradle("sample", path, "-n", "6", "--chains", "2", "-o", self.path("c"), "--simulate")
+        self.assertEqual(chain.returncode, 7)
+        self.assertEqual([line.split()[2:] for line in chain.stdout.splitlines()[1:]], [["0.0", "%", "3.0", "1.0", "0"]] * 2)
+        self.assertTrue(all("failure" in sample for sample in self.index("c")))
+
+    def test_what_was_known_of_a_sample_stays_known(self):
+        arguments = ("sample", self.drawn(), "-n", "1", "-o", self.path("set"), "--size", "64x36")
+        cradle(*arguments, "--render")
+        cradle(*arguments, "--check-accuracy")
+        (sample,) = self.index("set")
+        self.assertIn("horizon", sample)
+        self.refuses(5, [sample["pictures"]], *arguments, "--passes", "depth")
 
     def test_chains_need_wishes_and_draws(self):
         self.refuses(2, ["no wishes"], "sample", self.drawn(), "-n", "9", "--chains", "3", "-o", self.path("a"))

@@ -26,8 +26,8 @@ TEST(AutocorrelationTime, OfAnAutoregressiveSeriesIsThatOfItsClosedForm) {
   }
 }
 
-TEST(AutocorrelationTime, OfWhatNeverChangesIsThatOfIndependentSteps) {
-  EXPECT_EQ(autocorrelationTime(std::vector<double>(100, 3.0)), 1);
+TEST(AutocorrelationTime, OfWhatNeverChangesIsItsLength) {
+  EXPECT_EQ(autocorrelationTime(std::vector<double>(100, 3.0)), 100);
   EXPECT_EQ(autocorrelationTime({}), 1);
 }
 
