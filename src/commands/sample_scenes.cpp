@@ -79,17 +79,42 @@ void tellFailures(const std::vector<SampleRecord>& records) {
                   failed, records.size(), sampleName(first->number), *first->failure));
 }
 
+/// The end of the name of a tar file: in how many parts samples were packed.
+std::string partsOf(const fs::path& tar) {
+  const std::string name = tar.filename().string();
+  const auto of = name.find("_of_");
+  return of == name.npos ? "" : name.substr(of);
+}
+
 std::string tarNameOf(const SampleOptions& options) {
   if (!options.shard) return "samples.tar";
   const auto [part, parts] = parseShard(*options.shard);
   return fmt::format("samples_{}_of_{}.tar", part, parts);
 }
 
-void requireNoTar(const fs::path& path) {
+std::vector<SampleRecord> recordsOf(const DataSet& set, const SampleRange& range) {
+  std::vector<SampleRecord> records;
+  for (long number = range.first; number < range.end; ++number)
+    if (auto record = set.found(number)) records.push_back(std::move(*record));
+  return records;
+}
+
+/// Samples are packed once, in one way. A tar file whose samples are all there beside it is of a run that was ended
+/// before it had removed them.
+void requireRoomForTar(const fs::path& tar, const DataSet& set, const SampleRange& range) {
   std::error_code missing;
-  if (fs::exists(path, missing))
-    throw Error(ErrorKind::output, path.string(),
-                "is there already, and holds these samples; remove it, or name a new folder");
+  if (!fs::is_directory(tar.parent_path(), missing)) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(tar.parent_path())) {
+    if (entry.path().extension() != ".tar") continue;
+    const bool isIt = entry.path().filename() == tar.filename();
+    if (isIt && static_cast<long>(recordsOf(set, range).size()) < range.end - range.first)
+      throw Error(ErrorKind::output, tar.string(),
+                  "is there already, and holds these samples; remove it, or name a new folder");
+    if (!isIt && partsOf(entry.path()) != partsOf(tar))
+      throw Error(ErrorKind::output, entry.path().string(),
+                  "holds samples that were packed in other parts, which would be there twice; name a new folder, or "
+                  "remove it");
+  }
 }
 
 /// That there are warnings, which are in the samples.
@@ -117,6 +142,27 @@ void tellWishes(const std::vector<SampleRecord>& records) {
   if (chains.empty() && told > 0) show("{} of {} samples meet all wishes\n", met, told);
 }
 
+/// What is wrong with a scene and its pictures shows before a folder is made.
+void requireWork(const SceneSampler& sampler, const SampleOptions& options, const PictureOptions& pictures,
+                 const Work& work) {
+  if (options.chains) requireChains(sampler);
+  if (work.units() == 0) return;
+  const DrawnScene first = sampler.sample(options.seed, work.firstUnit());
+  if (pictures.passes) parsePasses(*pictures.passes);
+  if (options.renders) PictureOrder(pictures, first.loaded.scene);
+}
+
+/// Makes a sample that no chain comes to.
+void makeDrawn(const SceneSampler& sampler, const DataSet& set, const SampleOptions& options, long number) {
+  const DrawnScene drawn = sampler.sample(options.seed, number);
+  SampleRecord record;
+  record.number = number;
+  if (const auto found = set.found(number)) record.wishes = found->wishes;
+  if (record.wishes.empty() && !drawn.loaded.scene.wishes.empty() && !options.simulates)
+    record.wishes = simulateWishes(drawn.loaded.scene).outcomes;
+  set.make(record, drawn);
+}
+
 }  // namespace
 
 void sampleScenes(const std::string& scene, const std::string& folder, const SampleOptions& asked,
@@ -127,21 +173,15 @@ void sampleScenes(const std::string& scene, const std::string& folder, const Sam
   requireOptions(options);
   const Work work(options);
   requireSamplesAlone(folder);
-  const bool packs = options.format == "tar";
-  const fs::path tar = fs::path(folder) / tarNameOf(options);
-  if (packs) requireNoTar(tar);
   const SceneSampler sampler(scene, pictures.assetRoot);
-  if (options.chains) requireChains(sampler);
-  if (work.units() > 0) {  // what is wrong shows before a folder is made
-    const DrawnScene first = sampler.sample(options.seed, work.firstUnit());
-    if (pictures.passes) parsePasses(*pictures.passes);
-    if (options.renders) PictureOrder(pictures, first.loaded.scene);
-  }
-  const ResultFolder made(folder);
-  const FolderLock lock(folder, FolderUse::shared);
-
   const DataSet set(sampler, folder, options, pictures);
   const SampleRange range = work.samples();
+  const bool packs = options.format == "tar";
+  const fs::path tar = fs::path(folder) / tarNameOf(options);
+  if (packs) requireRoomForTar(tar, set, range);
+  requireWork(sampler, options, pictures, work);
+  const ResultFolder made(folder);
+  const FolderLock lock(folder, FolderUse::shared);
   try {
     Progress progress("Sampling", "samples", std::max(1L, range.end - range.first), quiet);
     shareAmongProcesses(
@@ -149,30 +189,21 @@ void sampleScenes(const std::string& scene, const std::string& folder, const Sam
         [&](long number, const std::function<void()>& tell) {
           const long unit = work.firstUnit() + number;
           if (options.chains) return SampleChain(sampler, set, options.seed, unit).make(work.samplesOf(unit), tell);
-          const DrawnScene drawn = sampler.sample(options.seed, unit);
-          SampleRecord record;
-          record.number = unit;
-          if (const auto found = set.found(unit)) record.wishes = found->wishes;
-          if (record.wishes.empty() && !drawn.loaded.scene.wishes.empty() && !options.simulates)
-            record.wishes = simulateWishes(drawn.loaded.scene).outcomes;
-          set.make(record, drawn);
+          makeDrawn(sampler, set, options, unit);
           tell();
         },
         [&](long done) { progress.update(done); });
   } catch (const Error&) {
-    writeIndex(folder, scene, {});  // of those that are there
+    if (!recordsOf(set, range).empty()) writeIndex(folder, scene, {});  // of those that are there
     throw;
   }
-  std::vector<SampleRecord> records;
-  for (long number = range.first; number < range.end; ++number) {
-    auto record = set.found(number);
-    if (!record)
-      throw Error(ErrorKind::output, set.folderOf(number).string(),
-                  "is gone while its data set was made; make it again");
-    records.push_back(std::move(*record));
-    if (packs) records.back().tar = tar.filename().string();
+  std::vector<SampleRecord> records = recordsOf(set, range);
+  if (static_cast<long>(records.size()) < range.end - range.first)
+    throw Error(ErrorKind::output, folder, "has lost samples while it was made; make it again");
+  if (packs) {
+    for (SampleRecord& record : records) record.tar = tar.filename().string();
+    if (!fs::exists(tar)) packSamples(folder, tar.string(), records);
   }
-  if (packs) packSamples(folder, tar.string(), records);
   writeIndex(folder, scene, packs ? records : std::vector<SampleRecord>{});
   if (packs)
     for (const SampleRecord& record : records) fs::remove_all(set.folderOf(record.number));

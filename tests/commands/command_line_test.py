@@ -302,6 +302,32 @@ class Samples(InTemporaryFolder):
         self.assertEqual([line.split()[2:] for line in chain.stdout.splitlines()[1:]], [["0.0", "%", "3.0", "1.0", "0"]] * 2)
         self.assertTrue(all("failure" in sample for sample in self.index("c")))
 
+    def test_samples_are_packed_once(self):
+        arguments = ("sample", self.drawn(), "-n", "4", "--format", "tar", "-o", self.path("set"))
+        for shard in ("1/2", "2/2"):
+            cradle(*arguments, "--shard", shard)
+        for shard in ("1/3", "1/1"):
+            self.refuses(5, ["_of_2.tar", "other parts"], *arguments, "--shard", shard)
+        self.refuses(5, ["samples_1_of_2.tar", "holds these samples"], *arguments, "--shard", "1/2")
+        self.assertEqual([sample["tar"] for sample in self.index("set")], ["samples_1_of_2.tar"] * 2 + ["samples_2_of_2.tar"] * 2)
+
+    def test_a_run_that_was_ended_behind_its_tar_file_goes_on(self):
+        arguments = ("sample", self.drawn(), "-n", "2", "-o", self.path("set"))
+        cradle(*arguments)
+        folders = [os.path.join(self.path("set"), sample["folder"]) for sample in self.index("set")]
+        for folder in folders:
+            shutil.copytree(folder, self.path("kept_" + os.path.basename(folder)))
+        cradle(*arguments, "--format", "tar")
+        packed = content(self.path("set/samples.tar"))
+        for folder in folders:
+            shutil.move(self.path("kept_" + os.path.basename(folder)), folder)
+        os.remove(self.path("set/index.json"))
+        result = cradle(*arguments, "--format", "tar")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(content(self.path("set/samples.tar")), packed)
+        self.assertEqual([sample["tar"] for sample in self.index("set")], ["samples.tar"] * 2)
+        self.assertEqual(sorted(os.listdir(self.path("set"))), ["index.json", "samples.tar"])
+
     def test_what_was_known_of_a_sample_stays_known(self):
         arguments = ("sample", self.drawn(), "-n", "1", "-o", self.path("set"), "--size", "64x36")
         cradle(*arguments, "--render")
