@@ -1,6 +1,5 @@
-// A command becomes stages: a trajectory, parts of the pictures or samples, a look whether all are there, a film. A
-// stage is a script that does one of its tasks, the same for all schedulers; run.sh alone differs. What a task finds
-// whole it leaves, so that no scheduler needs to know how far an ended one was.
+// A command becomes stages: a trajectory, parts of the pictures or samples, a look whether all are there, a film. What
+// a task finds whole it leaves, so that no scheduler needs to know how far an ended one was.
 
 #include "commands/submit.h"
 
@@ -14,12 +13,12 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
-#include <thread>
 
 #include "commands/frame_folder.h"
+#include "commands/job_scripts.h"
 #include "commands/sample_chain.h"
 #include "commands/sample_folder.h"
-#include "commands/simulate_scene.h"
+#include "commands/trajectory_source.h"
 #include "core/console.h"
 #include "core/error.h"
 #include "core/folder_lock.h"
@@ -41,30 +40,8 @@ constexpr double kMinTaskTime = 30;              // s: a scheduler takes a secon
 constexpr long kMaxTasks = 100'000;              // of a stage, where no scheduler says less
 constexpr long kUsualMaxArraySize = 1001;        // of Slurm, unless it is configured; one more than the tasks
 constexpr std::uint64_t kMaxScript = 1'000'000;  // bytes
-constexpr const char* kRunScript = "run.sh";
-constexpr const char* kCheck = "check";  // the stage
 // Beside the scripts: a sample that is made to see how long one takes; what becomes a film, and what it is drawn from.
 constexpr const char *kPilot = "pilot", *kFrames = "frames", *kTrajectory = "trajectory.sqlite";
-
-/// A word of a shell command.
-std::string quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char letter : word)
-    if (letter == '\'')
-      text += "'\\''";
-    else
-      text += letter;
-  return text + "'";
-}
-
-std::string quoted(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    if (!text.empty()) text += ' ';
-    text += quoted(word);
-  }
-  return text;
-}
 
 std::string absolute(const std::string& path) {
   return fs::absolute(path).lexically_normal().string();
@@ -125,26 +102,6 @@ long wholeNumber(const char* option, const std::optional<std::string>& text, lon
   return number;
 }
 
-/// Tasks that may run beside each other, behind those of the stage before.
-struct JobStage {
-  std::string name;
-  long tasks = 1;
-  std::string script;  // of shell commands, in which $task is 1 .. tasks
-};
-
-/// What is to be done, and where what belongs to it is kept.
-struct JobPlan {
-  std::string folder;
-  std::string inputHash;
-  std::vector<JobStage> stages;
-  long processors = 1;   // of a task
-  std::string pictures;  // the folder of the user that they go to; empty if there is none
-};
-
-std::string scriptFile(std::size_t stage, const JobStage& of) {
-  return fmt::format("{}_{}.sh", stage + 1, of.name);
-}
-
 /// The most tasks that an array may have.
 long maxTasksOf(const std::string& scheduler) {
   if (scheduler != "slurm") return kMaxTasks;
@@ -164,18 +121,6 @@ long maxTasksOf(const std::string& scheduler) {
 
 long tasksFor(double work, double ofATask, long most) {
   return std::clamp(static_cast<long>(std::ceil(work / ofATask)), 1L, most);
-}
-
-/// Ends with the name of the first file in a folder that is not there, of those that printf makes of a pattern and
-/// numbers.
-JobStage checkStage(const std::string& folder, const std::string& pattern, long first, long count) {
-  return {kCheck, 1,
-          fmt::format(
-              "number={}\nwhile [ \"$number\" -lt {} ]; do\n"
-              "  file={}/$(printf {} \"$number\")\n"
-              "  [ -e \"$file\" ] || {{ echo \"$file is missing; start run.sh again to have it made\" >&2; exit 5; }}\n"
-              "  number=$((number + 1))\ndone\n",
-              first, first + count, quoted(folder), quoted(pattern))};
 }
 
 /// The program that runs.
@@ -203,20 +148,12 @@ struct Film {
 };
 
 Film filmOf(const std::string& input, const std::string& assetRoot) {
-  const bool isTrajectory = isDatabaseFile(input);
   Film film;
-  if (isTrajectory) {
-    const TrajectoryReader trajectory(input);
-    film.frames = std::max(1L, trajectory.frameCount() - 1);
-    film.isTrajectory = true;
-    const Scene scene =
-        parseScene(trajectory.header().scene, input, modelFilesBeside(trajectory.header().scenePath)).scene;
-    film.framesPerSecond = scene.output.framesPerSecond, film.hasTitleCard = scene.titleCard.has_value();
-    return film;
-  }
-  const Scene scene = loadSceneAndWarn(input, {.assetRoot = assetRoot});
-  film.frames = std::max(1L, lastFrame(scene));
-  film.framesPerSecond = scene.output.framesPerSecond, film.hasTitleCard = scene.titleCard.has_value();
+  film.isTrajectory = isDatabaseFile(input);
+  const TrajectorySource source(input, true, {.assetRoot = assetRoot});
+  film.frames = source.pictureCount();
+  film.framesPerSecond = source.scene().output.framesPerSecond;
+  film.hasTitleCard = source.scene().titleCard.has_value();
   return film;
 }
 
@@ -285,29 +222,6 @@ double timeOfASample(const std::string& scene, const CommandWords& words, long c
   return seconds;
 }
 
-/// The script of a stage: $task is its first argument, or what Slurm says.
-std::string stageText(const JobPlan& plan, std::size_t number) {
-  const JobStage& stage = plan.stages[number];
-  const std::string log = quoted((fs::path(plan.folder) / fmt::format("{}_{}_", number + 1, stage.name)).string());
-  std::string text = "#!/bin/sh\n";
-  // Without --time, account and partition: those are of the site, which SBATCH_TIMELIMIT, SBATCH_ACCOUNT and
-  // SBATCH_PARTITION name.
-  text += fmt::format("#SBATCH --job-name=cradle-{}\n#SBATCH --requeue\n#SBATCH --open-mode=append\n", stage.name);
-  text += fmt::format("#SBATCH --ntasks=1\n#SBATCH --cpus-per-task={}\n#SBATCH --output=/dev/null\n", plan.processors);
-  if (stage.tasks > 1) text += fmt::format("#SBATCH --array=1-{}\n", stage.tasks);
-  return text + fmt::format("task={}\nexec >>{}\"$task.log\" 2>&1\n{}",
-                            stage.tasks > 1 ? "${1:-$SLURM_ARRAY_TASK_ID}" : "1", log, stage.script);
-}
-
-struct JobScript {
-  std::string path, text;
-};
-
-bool areThere(const std::vector<JobScript>& scripts) {
-  return std::all_of(scripts.begin(), scripts.end(),
-                     [](const JobScript& script) { return holdsText(script.path, script.text); });
-}
-
 /// Makes the samples, and looks whether all are there.
 std::vector<JobStage> sampleStages(const std::vector<std::string>& make, const std::string& output, bool packs,
                                    long tasks, long count) {
@@ -352,7 +266,7 @@ void planSamples(const std::string& scheduler, const std::string& scene, const s
   const auto setTasks = [&](long tasks) { plan.stages = sampleStages(make, output, format == "tar", tasks, count); };
   // The time of a sample differs from call to call: the same jobs as those that are there are in as many tasks.
   setTasks(tasksThatAreThere(plan.folder));
-  if (areThere({{(fs::path(plan.folder) / scriptFile(0, plan.stages[0])).string(), stageText(plan, 0)}})) return;
+  if (areThere({stageScript(plan, 0)})) return;
   if (!quiet) show(stderr, "Making one sample, to see how long they take\n");
   const double time = timeOfASample(scene, words, count, plan.folder);
   setTasks(tasksFor(time * static_cast<double>(count) / static_cast<double>(plan.processors), kMinTaskTime,
@@ -360,12 +274,7 @@ void planSamples(const std::string& scheduler, const std::string& scene, const s
 }
 
 bool isOfJobs(const std::string& name) {
-  if (name == kRunScript || name == kPilot || name == kFrames || name.starts_with(kTrajectory)) return true;
-  constexpr std::array kStages = {"_simulate", "_render", "_sample", kCheck, "_encode"};
-  const bool isOfStage = name.size() > 1 && std::any_of(kStages.begin(), kStages.end(), [&](const std::string& stage) {
-                           return name.substr(1).starts_with(stage[0] == '_' ? stage : "_" + stage);
-                         });
-  return isOfStage && (name.ends_with(".sh") || name.ends_with(".log"));
+  return name == kRunScript || name == kPilot || name == kFrames || name.starts_with(kTrajectory) || isOfStage(name);
 }
 
 /// Removes what earlier jobs have left in their folder: they were others. Throws Error(output) if it is not theirs.
@@ -403,7 +312,8 @@ JobPlan planOf(const SubmitOptions& options, bool quiet, std::optional<ResultFol
   requireOwnFolder(plan.folder, "job", isOfJobs);
   made.emplace(plan.folder);
   if (command[0] == "simulate") {
-    filmOf(input, "");
+    if (filmOf(input, shownValue(words, {"--asset-root"}).value_or("")).isTrajectory)
+      throw Error(ErrorKind::usage, input, "is a trajectory; a scene file is simulated");
     addSimulation(input, target.string(), words.options(), plan);
   } else if (command[0] == "sample") {
     planSamples(options.scheduler, input, target.string(), words, quiet, plan);
@@ -411,54 +321,6 @@ JobPlan planOf(const SubmitOptions& options, bool quiet, std::optional<ResultFol
     planPictures(options.scheduler, input, target.string(), command[0] == "video", words, plan);
   }
   return plan;
-}
-
-/// Starts the stages one after the other, and tells which has not come to its end.
-std::string runText(const std::string& scheduler, const JobPlan& plan) {
-  std::string text = fmt::format(
-      "#!/bin/sh\n# Does all that is not there yet; may be started again at any time.\n"
-      "# Of an input with the hash {}.\ncd {} || exit 5\n",
-      plan.inputHash, quoted(plan.folder));
-  std::string after;
-  for (std::size_t i = 0; i < plan.stages.size(); ++i) {
-    const JobStage& stage = plan.stages[i];
-    const std::string script = scriptFile(i, stage);
-    if (scheduler == "slurm") {
-      text +=
-          fmt::format("job=$(sbatch --parsable{} ./{}) || exit 5\njob=${{job%%;*}}\necho \"{}: job $job, {} task{}\"\n",
-                      after, script, stage.name, stage.tasks, stage.tasks == 1 ? "" : "s");
-      after = " --dependency=\"afterok:$job\" --kill-on-invalid-dep=yes";
-      continue;
-    }
-    const std::string numbers = fmt::format("seq {} | ", stage.tasks);
-    const std::string beside = fmt::format("\"$((($(nproc) + {}) / {}))\"", plan.processors - 1, plan.processors);
-    const std::string call = fmt::format("sh {} {{}}", quoted((fs::path(plan.folder) / script).string()));
-    if (stage.tasks == 1)  // where it ends it is done, whatever a log says
-      text += fmt::format("sh ./{}", script);
-    else if (scheduler == "parallel")
-      text += fmt::format("{}parallel -j {} --joblog {}_{}.joblog.log --resume-failed {}", numbers, beside, i + 1,
-                          stage.name, quoted(call));
-    else
-      text += fmt::format("{}xargs -P {} -I{{}} {}", numbers, beside, call);
-    // What is missing was made once, as the logs of GNU parallel say: all tasks look again for what they lack.
-    const bool forgets = scheduler == "parallel" && stage.name == kCheck;
-    text += fmt::format(
-        " ||\n  {{ {}echo \"{} has not come to its end, see {}_{}_*.log in $PWD; start $0 again to go on\" >&2; exit "
-        "5; "
-        "}}\n",
-        forgets ? "rm -f ./*.joblog.log; " : "", stage.name, i + 1, stage.name);
-  }
-  return text;
-}
-
-/// Those of the stages, and run.sh behind them.
-std::vector<JobScript> scriptsOf(const std::string& scheduler, const JobPlan& plan) {
-  const fs::path folder = plan.folder;
-  std::vector<JobScript> scripts;
-  for (std::size_t i = 0; i < plan.stages.size(); ++i)
-    scripts.push_back({(folder / scriptFile(i, plan.stages[i])).string(), stageText(plan, i)});
-  scripts.push_back({(folder / kRunScript).string(), runText(scheduler, plan)});
-  return scripts;
 }
 
 /// Jobs leave pictures that are there: those of another scene, or of other options, would be among theirs.
