@@ -50,6 +50,13 @@ DrawnScene sceneOf(const SceneSampler& sampler, const UniformNumbers& numbers) {
   });
 }
 
+/// What the next sample of a chain follows from.
+SampleRecord stateOf(const SampleRecord& sample) {
+  SampleRecord state;
+  state.number = sample.number, state.wishes = sample.wishes, state.chain = sample.chain;
+  return state;
+}
+
 }  // namespace
 
 void requireChains(const SceneSampler& sampler) {
@@ -62,48 +69,54 @@ void requireChains(const SceneSampler& sampler) {
         "scene");
 }
 
-void SampleChain::make(const SampleRange& range, const std::function<void()>& tell) const {
-  SampleRecord record;  // the state of the chain
-  record.number = range.first;
-  long number = range.first;
-  for (; number < range.end; ++number) {
-    auto found = set_.found(number);
+/// The last of the samples that are there, from the start on, with all that is asked for.
+std::optional<SampleRecord> SampleChain::lastWhole(const SampleRange& range, const std::function<void()>& tell) const {
+  std::optional<SampleRecord> last;
+  for (long number = range.first; number < range.end; ++number) {
+    const auto found = set_.found(number);
     if (!found || !found->chain) break;
-    const UniformNumbers numbers = found->chain->numbers;
-    record = std::move(*found);
-    record.chain->chain = chain_, record.chain->iteration = number - range.first;
-    set_.make(record, sceneOf(sampler_, numbers));
+    last = found;
+    last->chain->chain = chain_, last->chain->iteration = number - range.first;
+    set_.make(*last, sceneOf(sampler_, found->chain->numbers));
     tell();
   }
-  DrawnMotion start = number == range.first ? motionOf(sampler_.sample(seed_, chain_))
-                                            : DrawnMotion{sceneOf(sampler_, record.chain->numbers),
-                                                          WishedMotion{record.wishes, record.chain->logLikelihood}};
-  if (number == range.first) {
-    record.chain = ChainRecord{chain_, 0, true, number, start.motion.logLikelihood, start.drawn.numbers};
-    record.wishes = start.motion.outcomes;
-    set_.make(record, start.drawn);
-    tell(), ++number;
-  }
-  Proposals proposals(sampler_, std::move(start));
+  return last;
+}
+
+SampleRecord SampleChain::begin(long number) const {
+  const DrawnMotion start = motionOf(sampler_.sample(seed_, chain_));
+  SampleRecord record;
+  record.number = number;
+  record.wishes = start.motion.outcomes;
+  record.chain = ChainRecord{chain_, 0, true, number, start.motion.logLikelihood, start.drawn.numbers};
+  set_.make(record, start.drawn);
+  return record;
+}
+
+void SampleChain::make(const SampleRange& range, const std::function<void()>& tell) const {
+  const auto whole = lastWhole(range, tell);
+  SampleRecord record = whole ? stateOf(*whole) : begin(range.first);
+  if (!whole) tell();
+  Proposals proposals(
+      sampler_, {sceneOf(sampler_, record.chain->numbers), WishedMotion{record.wishes, record.chain->logLikelihood}});
   MetropolisChain chain(sampler_.places(),
                         [&](const UniformSource& uniform) { return proposals.logLikelihoodOf(uniform); },
                         RandomStream(seed_).at("chain").at(static_cast<std::uint64_t>(chain_)),
                         {record.chain->numbers, record.chain->logLikelihood});
-  for (; number < range.end; ++number) {
+  while (record.number + 1 < range.end) {
     throwIfInterrupted();
-    const bool isAccepted = chain.step(number - range.first);
+    const long iteration = record.chain->iteration + 1;
+    const bool isAccepted = chain.step(iteration);
     if (isAccepted) proposals.accept();
-    SampleRecord next;
-    next.number = number;
-    next.wishes = proposals.current().motion.outcomes;
-    next.chain = ChainRecord{chain_,
-                             number - range.first,
-                             isAccepted,
-                             isAccepted ? number : record.chain->sameAs,
-                             chain.state().logLikelihood,
-                             chain.state().numbers};
-    set_.make(next, proposals.current().drawn);
-    record = std::move(next);
+    ++record.number;
+    record.wishes = proposals.current().motion.outcomes;
+    record.chain = ChainRecord{chain_,
+                               iteration,
+                               isAccepted,
+                               isAccepted ? record.number : record.chain->sameAs,
+                               chain.state().logLikelihood,
+                               chain.state().numbers};
+    set_.make(record, proposals.current().drawn);
     tell();
   }
 }

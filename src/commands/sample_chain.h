@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "commands/data_set.h"
 
@@ -27,6 +28,9 @@ class SampleChain {
   void make(const SampleRange& range, const std::function<void()>& tell) const;
 
  private:
+  std::optional<SampleRecord> lastWhole(const SampleRange& range, const std::function<void()>& tell) const;
+  SampleRecord begin(long number) const;
+
   const SceneSampler& sampler_;
   const DataSet& set_;
   std::uint64_t seed_;
