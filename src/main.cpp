@@ -41,6 +41,7 @@
 namespace cradle {
 namespace {
 
+constexpr const char* kAbout = "Cradle: rigid-body physics from a scene file, and pictures of it.";
 constexpr int kExitOfSignal = 128;  // and its number, as shells have it
 
 /// Everything that the command line can say, and the command that it asks for.
@@ -286,10 +287,7 @@ void addSubmit(CLI::App& app, CommandLine& line) {
       addCommand(app, line, "submit", "Do a long command in parts, as jobs of a scheduler",
                  "cradle submit local video scenes/newtons_cradle.json -o cradle.mp4\n"
                  "  cradle submit slurm --run sample distributions/dropped_shapes.json -n 10000 --passes all -o set",
-                 [&app, &line] {
-                   line.submission.command = app.get_subcommand("submit")->remaining();
-                   submitCommand(line.submission, line.quiet);
-                 });
+                 [&] { submitCommand(line.submission, line.quiet); });
   submit
       ->add_option("scheduler", line.submission.scheduler,
                    "slurm, parallel (GNU parallel), or local: this machine alone")
@@ -423,10 +421,8 @@ std::vector<std::string> wordsOf(int argc, char** argv) {
   return words;
 }
 
-int run(int argc, char** argv) {
-  std::optional<EndWithoutMemory> end(std::in_place);  // CLI11 asks for memory where it promises to throw nothing
-  CLI::App app("Cradle: rigid-body physics from a scene file, and pictures of it.", "cradle");
-  CommandLine line;
+/// All commands and options of the program.
+void addCommands(CLI::App& app, CommandLine& line) {
   app.set_version_flag("--version", "cradle " CRADLE_VERSION);
   app.add_flag_function(
       "-q,--quiet",
@@ -448,12 +444,13 @@ int run(int argc, char** argv) {
   addStudy(app, line);
   addQuestions(app, line);
   checkValues(app);
-  if (argc <= 1) {
-    showText(stderr, app.help());
-    return static_cast<int>(ErrorKind::usage);
-  }
+}
+
+/// Reads words, the last one first. The exit code, if they ask for help or are wrong, which is told then.
+std::optional<int> parse(CLI::App& app, const std::vector<std::string>& words) {
   try {
-    app.parse(wordsOf(argc, argv));
+    app.parse(std::vector<std::string>(words));
+    return std::nullopt;
   } catch (const CLI::RequiredError& error) {
     if (app.get_subcommands().empty()) refuseUnknownWord(app);
     return answer(app, error);
@@ -462,6 +459,28 @@ int run(int argc, char** argv) {
     return answer(app, error);
   } catch (const CLI::ParseError& error) {
     return answer(app, error);
+  }
+}
+
+int run(int argc, char** argv) {
+  std::optional<EndWithoutMemory> end(std::in_place);  // CLI11 asks for memory where it promises to throw nothing
+  CLI::App app(kAbout, "cradle");
+  CommandLine line;
+  addCommands(app, line);
+  if (argc <= 1) {
+    showText(stderr, app.help());
+    return static_cast<int>(ErrorKind::usage);
+  }
+  if (const auto code = parse(app, wordsOf(argc, argv))) return *code;
+  CLI::App ofJobs(kAbout, "cradle");
+  CommandLine jobs;
+  if (app.got_subcommand("submit")) {  // the words of its jobs are those of a command
+    requireScheduler(line.submission.scheduler);
+    std::vector<std::string>& words = line.submission.command = app.get_subcommand("submit")->remaining();
+    addCommands(ofJobs, jobs);
+    if (const auto code = words.empty() ? std::nullopt : parse(ofJobs, {words.rbegin(), words.rend()})) return *code;
+    requireSubmittable(words);
+    line.submission.pictures = jobs.pictures;
   }
   end.reset();  // commands leave nothing half-written
   line.command();

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "commands/film_drawer.h"
 #include "commands/frame_folder.h"
 #include "commands/job_scripts.h"
 #include "commands/sample_chain.h"
@@ -26,9 +27,11 @@
 #include "core/part_file.h"
 #include "core/read_file.h"
 #include "image/child_process.h"
+#include "image/video.h"
 #include "sampling/scene_sampler.h"
 #include "trajectory/state_hash.h"
 #include "trajectory/trajectory_file.h"
+#include "truth/passes.h"
 
 namespace cradle {
 namespace {
@@ -147,10 +150,13 @@ struct Film {
   bool isTrajectory = false;
 };
 
-Film filmOf(const std::string& input, const std::string& assetRoot) {
+/// Throws what is wrong with the input, or with its pictures.
+Film filmOf(const std::string& input, const PictureOptions& pictures) {
   Film film;
   film.isTrajectory = isDatabaseFile(input);
-  const TrajectorySource source(input, true, {.assetRoot = assetRoot});
+  const TrajectorySource source(input, true, {.assetRoot = pictures.assetRoot});
+  if (pictures.passes) parsePasses(*pictures.passes);
+  PictureOrder(pictures, source.scene());
   film.frames = source.pictureCount();
   film.framesPerSecond = source.scene().output.framesPerSecond;
   film.hasTitleCard = source.scene().titleCard.has_value();
@@ -171,24 +177,25 @@ std::string patternOf(const CommandWords& words) {
   return first + "_%06d.npy";
 }
 
-void planPictures(const std::string& scheduler, const std::string& input, const std::string& output, bool encodes,
+void planPictures(const SubmitOptions& options, const std::string& input, const std::string& output,
                   CommandWords& words, JobPlan& plan) {
+  const bool encodes = options.command[0] == "video";
   words.refuse(
       {"--frames", "--shard", "--skip-existing", "--overwrite", "--side-by-side"},
       "is not for jobs, which draw all pictures that are not there yet; leave it out, or give the command itself");
-  const std::string assetRoot = shownValue(words, {"--asset-root"}).value_or("");
-  const Film film = filmOf(input, assetRoot);
+  const Film film = filmOf(input, options.pictures);
   if (encodes && film.hasTitleCard)
     throw Error(ErrorKind::usage, input, "has a title card, which only `cradle video` itself puts before a film");
+  if (encodes) requireFilmName(output);
   const std::string trajectory = film.isTrajectory ? input : (fs::path(plan.folder) / kTrajectory).string();
   const std::string frames = encodes ? (fs::path(plan.folder) / kFrames).string() : output;
   if (!film.isTrajectory) {
+    const auto assetRoot = shownValue(words, {"--asset-root"});
     addSimulation(input, trajectory,
-                  assetRoot.empty() ? std::vector<std::string>{} : std::vector{std::string("--asset-root"), assetRoot},
-                  plan);
+                  assetRoot ? std::vector<std::string>{"--asset-root", *assetRoot} : std::vector<std::string>{}, plan);
     plan.stages.back().script = fmt::format("[ -e {} ] || {}", quoted(trajectory), plan.stages.back().script);
   }
-  const long tasks = tasksFor(static_cast<double>(film.frames), kPicturesOfATask, maxTasksOf(scheduler));
+  const long tasks = tasksFor(static_cast<double>(film.frames), kPicturesOfATask, maxTasksOf(options.scheduler));
   const std::string draw =
       programCall(joined({"render", trajectory, "-o", frames, "--skip-existing"}, words.options()));
   plan.stages.push_back({"render", tasks, fmt::format("{} --shard \"$task/{}\"\n", draw, tasks)});
@@ -290,19 +297,12 @@ void clearJobs(const fs::path& folder) {
 }
 
 JobPlan planOf(const SubmitOptions& options, bool quiet, std::optional<ResultFolder>& made) {
-  constexpr std::array kCommands = {"simulate", "render", "video", "sample"};
   const std::vector<std::string>& command = options.command;
-  if (command.empty() || std::find(kCommands.begin(), kCommands.end(), command[0]) == kCommands.end())
-    throw Error(ErrorKind::usage, command.empty() ? "submit" : command[0],
-                fmt::format("a command is to follow the scheduler; allowed are {}", fmt::join(kCommands, ", ")));
-  if (command.size() < 2 || command[1].starts_with('-'))
-    throw Error(ErrorKind::usage, command[0], "its input is to follow the command, before all options");
   const std::string input = absolute(command[1]);
   CommandWords words(command);
   const auto output = words.take({"-o", "--output"});
   if (!output || output->empty())
     throw Error(ErrorKind::usage, command[0], "-o is missing or empty; say where its results go");
-  if (command[1].empty()) throw Error(ErrorKind::usage, command[0], "its input is empty; name a file");
   words.refuse({"-o", "--output"}, "is there twice; say once where its results go");
   const fs::path target = fs::path(absolute(*output) + "/").parent_path();
   words.makeAbsolute("--shaders"), words.makeAbsolute("--asset-root");
@@ -312,13 +312,13 @@ JobPlan planOf(const SubmitOptions& options, bool quiet, std::optional<ResultFol
   requireOwnFolder(plan.folder, "job", isOfJobs);
   made.emplace(plan.folder);
   if (command[0] == "simulate") {
-    if (filmOf(input, shownValue(words, {"--asset-root"}).value_or("")).isTrajectory)
+    if (filmOf(input, {}).isTrajectory)
       throw Error(ErrorKind::usage, input, "is a trajectory; a scene file is simulated");
     addSimulation(input, target.string(), words.options(), plan);
   } else if (command[0] == "sample") {
     planSamples(options.scheduler, input, target.string(), words, quiet, plan);
   } else {
-    planPictures(options.scheduler, input, target.string(), command[0] == "video", words, plan);
+    planPictures(options, input, target.string(), words, plan);
   }
   return plan;
 }
@@ -335,15 +335,24 @@ void requireNoPictures(const std::string& folder) {
           "or remove it");
 }
 
+}  // namespace
+
 void requireScheduler(const std::string& scheduler) {
   if (scheduler != "slurm" && scheduler != "parallel" && scheduler != "local")
     throw Error(ErrorKind::usage, scheduler, "is no scheduler; allowed are slurm, parallel (GNU parallel) and local");
 }
 
-}  // namespace
+void requireSubmittable(const std::vector<std::string>& command) {
+  constexpr std::array kCommands = {"simulate", "render", "video", "sample"};
+  if (command.empty() || std::find(kCommands.begin(), kCommands.end(), command[0]) == kCommands.end())
+    throw Error(ErrorKind::usage, command.empty() ? "submit" : command[0],
+                fmt::format("a command is to follow the scheduler; allowed are {}", fmt::join(kCommands, ", ")));
+  if (command.size() < 2 || command[1].starts_with('-'))
+    throw Error(ErrorKind::usage, command[0], "its input is to follow the command, before all options");
+  if (command[1].empty()) throw Error(ErrorKind::usage, command[0], "its input is empty; name a file");
+}
 
 void submitCommand(const SubmitOptions& options, bool quiet) {
-  requireScheduler(options.scheduler);
   std::optional<ResultFolder> made;
   const JobPlan plan = planOf(options, quiet, made);
   const fs::path folder = plan.folder;

@@ -178,9 +178,22 @@ class Submitted(InTemporaryFolder):
         self.refuses(2, ["slurm, parallel (GNU parallel) and local"], "submit", "condor", "render", path, "-o", self.path("f"))
         self.refuses(2, ["plan", "simulate, render, video, sample"], "submit", "local", "plan", path)
         self.refuses(2, ["before all options"], "submit", "local", "render", "-o", self.path("f"), path)
-        self.refuses(2, ["-o is missing"], "submit", "local", "render", path)
+        self.refuses(2, ["--output is required"], "submit", "local", "render", path)
         self.refuses(2, ["--frames", "all pictures"], "submit", "local", "render", path, "--frames", "0:3", "-o", self.path("f"))
         self.refuses(3, ["/duration"], "submit", "local", "render", self.write("b.json", scene(duration=-1)), "-o", self.path("f"))
+        for code, words, command in (
+                (2, ["--bogus", "unknown option", "--size"], ("render", path, "--bogus", "-o", self.path("f"))),
+                (2, ["--overlay"], ("render", path, "--overlay", "nonsense", "-o", self.path("f"))),
+                (2, ["foo", "depth"], ("render", path, "--passes", "foo", "-o", self.path("f"))),
+                (2, ["--size", "16384"], ("render", path, "--size", "0x0", "-o", self.path("f"))),
+                (2, [".mp4"], ("video", path, "-o", self.path("f"))),
+                (2, ["-o"], ("render", path, "-o", self.path("f"), "-o", self.path("g"))),
+                (2, ["1 to 3"], ("sample", path, "-n", "3", "--chains", "4", "-o", self.path("f"))),
+                (2, ["no values to draw"], ("sample", path, "-n", "3", "--chains", "2", "-o", self.path("f")))):
+            self.refuses(code, words, "submit", "local", *command)
+        help = self.submit("local", "render", "--help")
+        self.assertEqual((help.returncode, help.stderr), (0, ""))
+        self.assertIn("cradle render", help.stdout)
         self.assertFalse(os.path.exists(self.path("f.jobs")))
 
 
