@@ -173,10 +173,11 @@ std::vector<std::vector<double>> seriesOf(const std::vector<const SampleRecord*>
   }
   std::vector<std::vector<double>> series;
   // All the same where each state meets its wishes wholly, which says nothing of how a chain moves.
-  const auto isOther = [&](double value) { return value != likelihoods.front(); };
-  if (std::all_of(likelihoods.begin(), likelihoods.end(), [](double value) { return std::isfinite(value); }) &&
-      std::any_of(likelihoods.begin(), likelihoods.end(), isOther))
-    series.push_back(std::move(likelihoods));
+  const auto isOther = [first = likelihoods.front()](double value) { return value != first; };
+  const bool isSeries =
+      std::all_of(likelihoods.begin(), likelihoods.end(), [](double value) { return std::isfinite(value); }) &&
+      std::any_of(likelihoods.begin(), likelihoods.end(), isOther);
+  if (isSeries) series.push_back(std::move(likelihoods));
   for (auto& [place, values] : numbers)
     if (values.size() == chain.size()) series.push_back(std::move(values));
   return series;
