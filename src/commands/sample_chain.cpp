@@ -27,12 +27,13 @@ class Proposals {
  public:
   Proposals(const SceneSampler& sampler, DrawnMotion start) : sampler_(sampler), current_(std::move(start)) {}
 
-  double logLikelihoodOf(const UniformSource& uniform) {
+  ChainOutcome outcomeOf(const UniformSource& uniform, const std::vector<NamedBumpChange>& bumpChanges) {
     proposed_ = {};
-    auto drawn = sampler_.possibleSceneOf(uniform);
-    if (!drawn) return kImpossible;
-    proposed_ = drawn->numbers == current_.drawn.numbers ? current_ : motionOf(std::move(*drawn));
-    return proposed_.motion.logLikelihood;
+    auto drawn = sampler_.possibleSceneOf(uniform, bumpChanges);
+    if (!drawn) return {kImpossible};
+    const bool isCurrent = drawn->numbers == current_.drawn.numbers && drawn->bumpChanges == current_.drawn.bumpChanges;
+    proposed_ = isCurrent ? current_ : motionOf(std::move(*drawn));
+    return {proposed_.motion.logLikelihood, proposed_.motion.impacts};
   }
   void accept() { current_ = std::move(proposed_); }
   const DrawnMotion& current() const { return current_; }
@@ -42,12 +43,13 @@ class Proposals {
   DrawnMotion current_, proposed_;
 };
 
-DrawnScene sceneOf(const SceneSampler& sampler, const UniformNumbers& numbers) {
-  return sampler.sceneOf([&](const std::string& pointer, std::size_t index) {
+DrawnScene sceneOf(const SceneSampler& sampler, const ChainState& state) {
+  const auto numberOf = [&numbers = state.numbers](const std::string& pointer, std::size_t index) {
     const auto ofDraw = numbers.find(pointer);
     // A record that lacks a number is of another scene: any will do for its text to differ.
     return ofDraw == numbers.end() || index >= ofDraw->second.size() ? 0.5 : ofDraw->second[index];
-  });
+  };
+  return sampler.sceneOf(numberOf, state.bumpChanges);
 }
 
 /// What the next sample of a chain follows from.
@@ -60,7 +62,7 @@ SampleRecord stateOf(const SampleRecord& sample) {
 }  // namespace
 
 void requireChains(const SceneSampler& sampler) {
-  if (sampler.places().empty())
+  if (sampler.places().empty() && !sampler.hasBumps())
     throw Error(ErrorKind::usage, "--chains", "the scene has no values to draw; a chain needs some to change");
   if (!sampler.hasWishes())
     throw Error(
@@ -77,7 +79,7 @@ std::optional<SampleRecord> SampleChain::lastWhole(const SampleRange& range, con
     if (!found || !found->chain) break;
     last = found;
     last->chain->chain = chain_, last->chain->iteration = number - range.first;
-    set_.make(*last, sceneOf(sampler_, found->chain->numbers));
+    set_.make(*last, sceneOf(sampler_, found->chain->state));
     tell();
   }
   return last;
@@ -88,7 +90,8 @@ SampleRecord SampleChain::begin(long number) const {
   SampleRecord record;
   record.number = number;
   record.wishes = start.motion.outcomes;
-  record.chain = ChainRecord{chain_, 0, true, number, start.motion.logLikelihood, start.drawn.numbers};
+  record.chain =
+      ChainRecord{chain_, 0, true, number, {start.drawn.numbers, start.motion.logLikelihood, {}, start.motion.impacts}};
   set_.make(record, start.drawn);
   return record;
 }
@@ -97,12 +100,14 @@ void SampleChain::make(const SampleRange& range, const std::function<void()>& te
   const auto whole = lastWhole(range, tell);
   SampleRecord record = whole ? stateOf(*whole) : begin(range.first);
   if (!whole) tell();
-  Proposals proposals(
-      sampler_, {sceneOf(sampler_, record.chain->numbers), WishedMotion{record.wishes, record.chain->logLikelihood}});
-  MetropolisChain chain(sampler_.places(),
-                        [&](const UniformSource& uniform) { return proposals.logLikelihoodOf(uniform); },
-                        RandomStream(seed_).at("chain").at(static_cast<std::uint64_t>(chain_)),
-                        {record.chain->numbers, record.chain->logLikelihood});
+  const ChainState& state = record.chain->state;
+  Proposals proposals(sampler_, {sceneOf(sampler_, state), {record.wishes, state.logLikelihood, state.impacts}});
+  MetropolisChain chain(
+      sampler_.places(), sampler_.hasBumps(),
+      [&](const UniformSource& uniform, const std::vector<NamedBumpChange>& bumpChanges) {
+        return proposals.outcomeOf(uniform, bumpChanges);
+      },
+      RandomStream(seed_).at("chain").at(static_cast<std::uint64_t>(chain_)), state);
   while (record.number + 1 < range.end) {
     throwIfInterrupted();
     const long iteration = record.chain->iteration + 1;
@@ -110,12 +115,8 @@ void SampleChain::make(const SampleRange& range, const std::function<void()>& te
     if (isAccepted) proposals.accept();
     ++record.number;
     record.wishes = proposals.current().motion.outcomes;
-    record.chain = ChainRecord{chain_,
-                               iteration,
-                               isAccepted,
-                               isAccepted ? record.number : record.chain->sameAs,
-                               chain.state().logLikelihood,
-                               chain.state().numbers};
+    record.chain =
+        ChainRecord{chain_, iteration, isAccepted, isAccepted ? record.number : record.chain->sameAs, chain.state()};
     set_.make(record, proposals.current().drawn);
     tell();
   }

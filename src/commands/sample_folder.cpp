@@ -16,7 +16,6 @@
 #include "core/output_path.h"
 #include "core/part_file.h"
 #include "core/read_file.h"
-#include "sampling/metropolis_chain.h"
 #include "scene/json_document.h"
 
 namespace cradle {
@@ -53,15 +52,24 @@ enum class Detail { listed, whole };
 JsonValue jsonOf(const ChainRecord& chain, Detail detail) {
   JsonValue::Object object = {member("number", double(chain.chain)), member("iteration", double(chain.iteration)),
                               member("accepted", chain.isAccepted), member("sameAs", double(chain.sameAs))};
-  object.push_back({"logLikelihood", {}, finiteOrNull(chain.logLikelihood)});
+  object.push_back({"logLikelihood", {}, finiteOrNull(chain.state.logLikelihood)});
   if (detail == Detail::listed) return jsonOf(std::move(object));
   JsonValue::Object numbers;
-  for (const auto& [place, ofPlace] : chain.numbers) {
+  for (const auto& [place, ofPlace] : chain.state.numbers) {
     JsonValue::Array values;
     for (const double number : ofPlace) values.push_back(jsonOf(number));
     numbers.push_back({place, {}, jsonOf(std::move(values))});
   }
   object.push_back(member("numbers", std::move(numbers)));
+  if (chain.state.impacts.empty() && chain.state.bumpChanges.empty()) return jsonOf(std::move(object));
+  JsonValue::Array changes;
+  for (const NamedBumpChange& change : chain.state.bumpChanges)
+    changes.push_back(jsonOf(JsonValue::Object{member("body", change.body), member("impact", double(change.impact)),
+                                               member("seed", double(change.seed))}));
+  object.push_back(member("bumpChanges", std::move(changes)));
+  JsonValue::Object impacts;
+  for (const auto& [body, count] : chain.state.impacts) impacts.push_back(member(body, double(count)));
+  object.push_back(member("impacts", std::move(impacts)));
   return jsonOf(std::move(object));
 }
 
@@ -139,18 +147,38 @@ UniformNumbers numbersAt(const JsonValue& json) {
   return numbers;
 }
 
+std::vector<NamedBumpChange> bumpChangesAt(const JsonValue& json) {
+  std::vector<NamedBumpChange> changes;
+  if (const auto* array = find<JsonValue::Array>(json, "bumpChanges"))
+    for (const JsonValue& change : *array) {
+      const auto *impact = find<double>(change, "impact"), *seed = find<double>(change, "seed");
+      const auto* body = find<std::string>(change, "body");
+      if (impact && seed && body)
+        changes.push_back({*body, static_cast<int>(*impact), static_cast<std::uint64_t>(*seed)});
+    }
+  return changes;
+}
+
+ImpactCounts impactsAt(const JsonValue& json) {
+  ImpactCounts impacts;
+  if (const auto* bodies = find<JsonValue::Object>(json, "impacts"))
+    for (const JsonMember& body : *bodies)
+      if (const auto* count = std::get_if<double>(&body.value.content)) impacts[body.key] = static_cast<int>(*count);
+  return impacts;
+}
+
 std::optional<ChainRecord> chainOf(const JsonValue& json) {
   const auto *number = find<double>(json, "number"), *iteration = find<double>(json, "iteration"),
              *sameAs = find<double>(json, "sameAs");
   const auto* isAccepted = find<bool>(json, "accepted");
   if (!number || !iteration || !sameAs || !isAccepted) return std::nullopt;
   const auto* logLikelihood = find<double>(json, "logLikelihood");
-  return ChainRecord{static_cast<long>(*number),
-                     static_cast<long>(*iteration),
-                     *isAccepted,
-                     static_cast<long>(*sameAs),
-                     logLikelihood ? *logLikelihood : -INFINITY,
-                     numbersAt(json)};
+  return ChainRecord{
+      static_cast<long>(*number),
+      static_cast<long>(*iteration),
+      *isAccepted,
+      static_cast<long>(*sameAs),
+      {numbersAt(json), logLikelihood ? *logLikelihood : -INFINITY, bumpChangesAt(json), impactsAt(json)}};
 }
 
 std::optional<ChainSummary> summaryOf(const JsonValue& json) {
@@ -167,9 +195,11 @@ std::vector<std::vector<double>> seriesOf(const std::vector<const SampleRecord*>
   std::map<std::pair<std::string, std::size_t>, std::vector<double>> numbers;
   std::vector<double> likelihoods;
   for (const SampleRecord* record : chain) {
-    likelihoods.push_back(record->chain->logLikelihood);
-    for (const auto& [place, ofPlace] : record->chain->numbers)
+    likelihoods.push_back(record->chain->state.logLikelihood);
+    for (const auto& [place, ofPlace] : record->chain->state.numbers) {
+      if (place == kBumpSeedPlace) continue;  // changes of bumps replace it bit by bit
       for (std::size_t i = 0; i < ofPlace.size(); ++i) numbers[{place, i}].push_back(ofPlace[i]);
+    }
   }
   std::vector<std::vector<double>> series;
   // All the same where each state meets its wishes wholly, which says nothing of how a chain moves.
@@ -296,7 +326,8 @@ std::string sampleName(long number) {
 std::vector<ChainSummary> summariesOf(const std::vector<SampleRecord>& records) {
   std::map<long, std::vector<const SampleRecord*>> chains;
   for (const SampleRecord& record : records)
-    if (record.chain && !record.chain->numbers.empty()) chains[record.chain->chain].push_back(&record);
+    if (record.chain && (!record.chain->state.numbers.empty() || !record.chain->state.impacts.empty()))
+      chains[record.chain->chain].push_back(&record);
   std::vector<ChainSummary> summaries;
   for (const auto& [number, chain] : chains) summaries.push_back(summaryOf(number, chain));
   return summaries;

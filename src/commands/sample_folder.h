@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sampling/metropolis_chain.h"
 #include "sampling/wish_watch.h"
 #include "scene/draws.h"
 
@@ -24,8 +25,7 @@ struct ChainRecord {
   long chain = 0, iteration = 0;  // from 0 on; iteration 0 is drawn without wishes
   bool isAccepted = true;         // else the state is that of the sample before
   long sameAs = 0;                // the sample that came to this state; itself if it was accepted
-  double logLikelihood = 0;       // -infinity: the state cannot be
-  UniformNumbers numbers;         // of the state; empty in the index
+  ChainState state;               // of the index the likelihood alone
 };
 
 /// What is known of a sample, kept as sample.json in its folder once all of it is there.

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kMinStep = 1e-4, kMaxStep = 1e-1;                                // of the range of a number in (0, 1)
 constexpr double kAllAnewShare = 0.1, kOneAnewShare = 0.3, kOneMovedShare = 0.3;  // of the steps; else all are moved
+constexpr double kBumpsShare = 0.5;  // of those that do not draw all anew, where there are bumps
 
 /// Around the ends: what leaves (0, 1) on one side comes in on the other.
 double moved(double number, double by) {
@@ -27,6 +28,12 @@ void move(std::vector<double>& numbers, double step, RandomStream& random) {
   for (double& number : numbers) number = moved(number, step * (2 * random.nextUniform() - 1));
 }
 
+int sumOf(const ImpactCounts& impacts) {
+  int sum = 0;
+  for (const auto& [body, count] : impacts) sum += count;
+  return sum;
+}
+
 /// Adds the numbers that are not there yet.
 void addNeeded(const std::vector<double>& needed, std::vector<double>& numbers) {
   for (std::size_t i = numbers.size(); i < needed.size(); ++i) numbers.push_back(needed[i]);
@@ -41,9 +48,13 @@ double covariance(const std::vector<double>& deviations, std::size_t lag) {
 
 }  // namespace
 
-MetropolisChain::MetropolisChain(std::vector<std::string> places, LogLikelihood logLikelihood,
+MetropolisChain::MetropolisChain(std::vector<std::string> places, bool hasBumps, Evaluate evaluate,
                                  const RandomStream& stream, ChainState start)
-    : places_(std::move(places)), logLikelihood_(std::move(logLikelihood)), stream_(stream), state_(std::move(start)) {}
+    : places_(std::move(places)),
+      hasBumps_(hasBumps),
+      evaluate_(std::move(evaluate)),
+      stream_(stream),
+      state_(std::move(start)) {}
 
 UniformSource MetropolisChain::sourceOf(UniformNumbers& numbers) const {
   const RandomStream prior = stream_.at("prior");
@@ -54,37 +65,73 @@ UniformSource MetropolisChain::sourceOf(UniformNumbers& numbers) const {
   };
 }
 
-UniformNumbers MetropolisChain::proposal(RandomStream& random) const {
-  UniformNumbers numbers = state_.numbers;
+MetropolisChain::Proposal MetropolisChain::proposal(RandomStream& random) const {
+  Proposal next{state_.numbers, state_.bumpChanges, "", 0};
   const double kind = random.nextUniform();
   const double step = kMinStep * exp(log(kMaxStep / kMinStep) * random.nextUniform());
-  const double count = static_cast<double>(places_.size());
-  const std::string& one =
-      places_[std::min(static_cast<std::size_t>(random.nextUniform() * count), places_.size() - 1)];
-  // A number that nothing needed yet is one of the prior, whatever is done to it.
-  const auto ofOne = numbers.find(one);
+  const double place = random.nextUniform();
   if (kind < kAllAnewShare) {
-    for (auto& [place, ofPlace] : numbers) drawAnew(ofPlace, random);
-  } else if (kind < kAllAnewShare + kOneAnewShare) {
-    if (ofOne != numbers.end()) drawAnew(ofOne->second, random);
-  } else if (kind < kAllAnewShare + kOneAnewShare + kOneMovedShare) {
-    if (ofOne != numbers.end()) move(ofOne->second, step, random);
-  } else {
-    for (auto& [place, ofPlace] : numbers) move(ofPlace, step, random);
+    for (auto& [pointer, ofPlace] : next.numbers) drawAnew(ofPlace, random);
+    if (next.numbers.contains(kBumpSeedPlace)) next.bumpChanges.clear();  // else their seed is given, and not drawn
+    return next;
   }
-  return numbers;
+  if (hasBumps_ && (places_.empty() || random.nextUniform() < kBumpsShare)) {
+    changeBumps(random, next);
+    return next;
+  }
+  const double count = static_cast<double>(places_.size());
+  const std::string& one = places_[std::min(static_cast<std::size_t>(place * count), places_.size() - 1)];
+  // A number that nothing needed yet is one of the prior, whatever is done to it.
+  const auto ofOne = next.numbers.find(one);
+  if (kind < kAllAnewShare + kOneAnewShare) {
+    if (ofOne != next.numbers.end()) drawAnew(ofOne->second, random);
+  } else if (kind < kAllAnewShare + kOneAnewShare + kOneMovedShare) {
+    if (ofOne != next.numbers.end()) move(ofOne->second, step, random);
+  } else {
+    for (auto& [pointer, ofPlace] : next.numbers)
+      if (pointer != kBumpSeedPlace) move(ofPlace, step, random);
+  }
+  return next;
+}
+
+/// Draws the bumps of a body anew from one of the impacts of the state's motion on.
+void MetropolisChain::changeBumps(RandomStream& random, Proposal& next) const {
+  const int all = sumOf(state_.impacts);
+  int number = static_cast<int>(random.nextUniform() * all);  // from 0 on, over all bodies
+  const auto seed = static_cast<std::uint64_t>(kBumpSeeds * random.nextUniform());
+  for (const auto& [body, count] : state_.impacts) {
+    if (number < count) {
+      next.changedBody = body, next.changedFrom = number + 1;
+      break;
+    }
+    number -= count;
+  }
+  if (next.changedFrom == 0) return;
+  std::erase_if(next.bumpChanges, [&](const NamedBumpChange& change) {
+    return change.body == next.changedBody && change.impact >= next.changedFrom;
+  });
+  next.bumpChanges.push_back({next.changedBody, next.changedFrom, seed});
+}
+
+/// Log of how much likelier the step back is to be proposed than the step there. From one motion to another, and back,
+/// leads the same impact, of as many as the one and the other have.
+double MetropolisChain::logProposalRatio(const Proposal& next, const ImpactCounts& impacts) const {
+  if (next.changedFrom == 0) return 0;
+  const auto there = impacts.find(next.changedBody);
+  if (there == impacts.end() || there->second < next.changedFrom) return -std::numeric_limits<double>::infinity();
+  return log(double(sumOf(state_.impacts)) / sumOf(impacts));
 }
 
 bool MetropolisChain::step(long number) {
   RandomStream random = stream_.at("step").at(static_cast<std::uint64_t>(number));
-  ChainState next;
-  next.numbers = proposal(random);
-  next.logLikelihood = logLikelihood_(sourceOf(next.numbers));
+  Proposal next = proposal(random);
+  ChainOutcome outcome = evaluate_(sourceOf(next.numbers), next.bumpChanges);
   // Not below: from a state that cannot be, too, but to one that can.
-  const bool isAccepted = next.logLikelihood > -std::numeric_limits<double>::infinity() &&
-                          log(random.nextUniform()) <= next.logLikelihood - state_.logLikelihood;
+  const bool isAccepted = outcome.logLikelihood > -std::numeric_limits<double>::infinity() &&
+                          log(random.nextUniform()) <=
+                              outcome.logLikelihood - state_.logLikelihood + logProposalRatio(next, outcome.impacts);
   if (isAccepted)
-    state_ = std::move(next);
+    state_ = {std::move(next.numbers), outcome.logLikelihood, std::move(next.bumpChanges), std::move(outcome.impacts)};
   else
     for (auto& [place, ofPlace] : next.numbers) addNeeded(ofPlace, state_.numbers[place]);
   return isAccepted;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -76,6 +77,38 @@ std::optional<EntryInOthers> firstInOthers(const DrawnScene& drawn) {
                           kMaxAttempts, crowded.a->name, crowded.b->name));
 }
 
+JsonValue jsonAt(const TextPlace& place, decltype(JsonValue::content) content) {
+  return {place, std::move(content)};
+}
+
+/// Gives the bumps of a drawn scene a seed, if they have none.
+void drawSeedOfBumps(const UniformSource& uniform, DrawnDocument& made) {
+  JsonValue* bumps = memberOf(made.document, "bumps");
+  auto* members = bumps == nullptr ? nullptr : std::get_if<JsonValue::Object>(&bumps->content);
+  if (members == nullptr || memberOf(*bumps, "seed") != nullptr) return;
+  const JsonValue seed = jsonAt(bumps->place, std::floor(kBumpSeeds * uniform(kBumpSeedPlace, 0)));
+  members->push_back({"seed", bumps->place, seed});
+  made.values.push_back({kBumpSeedPlace, seed});
+}
+
+bool hasBody(const DrawnScene& drawn, const std::string& name) {
+  const std::vector<Body>& bodies = drawn.loaded.scene.bodies;
+  return std::any_of(bodies.begin(), bodies.end(), [&](const Body& body) { return body.name == name; });
+}
+
+void addChange(const NamedBumpChange& change, JsonValue& bumps) {
+  const TextPlace place = bumps.place;
+  JsonValue* changes = memberOf(bumps, "changes");
+  if (changes == nullptr) {
+    auto& members = std::get<JsonValue::Object>(bumps.content);
+    changes = &members.emplace_back(JsonMember{"changes", place, jsonAt(place, JsonValue::Array{})}).value;
+  }
+  std::get<JsonValue::Array>(changes->content)
+      .push_back(jsonAt(place, JsonValue::Object{{"body", place, jsonAt(place, change.body)},
+                                                 {"impact", place, jsonAt(place, double(change.impact))},
+                                                 {"seed", place, jsonAt(place, double(change.seed))}}));
+}
+
 /// Lets a path that starts from one folder start from another one.
 void moveStart(JsonValue* path, const fs::path& from, const fs::path& to) {
   auto* text = path == nullptr ? nullptr : std::get_if<std::string>(&path->content);
@@ -97,7 +130,7 @@ SceneSampler::SceneSampler(const std::string& path, const std::string& assetRoot
   faults.throwIfAny();
 }
 
-DrawnScene SceneSampler::sceneOf(const UniformSource& uniform) const {
+DrawnScene SceneSampler::sceneOf(const UniformSource& uniform, const std::vector<NamedBumpChange>& bumpChanges) const {
   UniformNumbers numbers;
   const UniformSource recorded = [&](const std::string& pointer, std::size_t index) {
     std::vector<double>& ofDraw = numbers[pointer];
@@ -105,9 +138,20 @@ DrawnScene SceneSampler::sceneOf(const UniformSource& uniform) const {
     return ofDraw[index] = uniform(pointer, index);
   };
   DrawnDocument made = drawn(document_, recorded);
+  drawSeedOfBumps(recorded, made);
   LoadedScene loaded = parseScene(made.document, path_, models_, textures_);
-  return {std::move(made.document), std::move(made.values), std::move(loaded), std::move(made.bodyOrigins), 0,
-          std::move(numbers)};
+  DrawnScene scene{std::move(made.document),
+                   std::move(made.values),
+                   std::move(loaded),
+                   std::move(made.bodyOrigins),
+                   0,
+                   std::move(numbers),
+                   bumpChanges};
+  if (bumpChanges.empty() || !scene.loaded.scene.bumps) return scene;
+  for (const NamedBumpChange& change : bumpChanges)
+    if (hasBody(scene, change.body)) addChange(change, *memberOf(scene.document, "bumps"));
+  scene.loaded = parseScene(scene.document, path_, models_, textures_);
+  return scene;
 }
 
 DrawnScene SceneSampler::sample(std::uint64_t seed, long number) const {
@@ -122,8 +166,9 @@ DrawnScene SceneSampler::sample(std::uint64_t seed, long number) const {
   }
 }
 
-std::optional<DrawnScene> SceneSampler::possibleSceneOf(const UniformSource& uniform) const {
-  DrawnScene scene = sceneOf(uniform);
+std::optional<DrawnScene> SceneSampler::possibleSceneOf(const UniformSource& uniform,
+                                                        const std::vector<NamedBumpChange>& bumpChanges) const {
+  DrawnScene scene = sceneOf(uniform, bumpChanges);
   refuseUnsupported(scene.loaded.scene);
   if (firstInOthers(scene)) return std::nullopt;
   return scene;

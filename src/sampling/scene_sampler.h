@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/random_stream.h"
+#include "sampling/bump_changes.h"
 #include "scene/draws.h"
 #include "scene/load_scene.h"
 
@@ -19,6 +20,7 @@ struct DrawnScene {
   std::vector<std::string> bodyOrigins;  // JSON pointer, in the file with draws, of each entry of `bodies`
   int redrawn = 0;                       // times that a body was drawn again, for it overlapped others
   UniformNumbers numbers;                // that the draws were made with
+  std::vector<NamedBumpChange> bumpChanges;
 };
 
 /// A scene file with values to be drawn: a distribution of scenes.
@@ -27,8 +29,9 @@ class SceneSampler {
   /// Throws Error(scene) with all faults of the draws. The meshes must be below `assetRoot`, unless that is empty.
   explicit SceneSampler(const std::string& path, const std::string& assetRoot = "");
 
-  /// The scene of some numbers. Throws what loading it throws: drawn values may be out of range.
-  DrawnScene sceneOf(const UniformSource& uniform) const;
+  /// The scene of some numbers; behind the changes of its bumps are those of bodies that it has. Throws what loading it
+  /// throws: drawn values may be out of range.
+  DrawnScene sceneOf(const UniformSource& uniform, const std::vector<NamedBumpChange>& bumpChanges = {}) const;
 
   /// The scene of a seed and a sample's number. Bodies that overlap others, in entries of the file with draws, are
   /// drawn again until they do not, in the order of the file; those whose entries have no draws are there first. Throws
@@ -36,10 +39,14 @@ class SceneSampler {
   DrawnScene sample(std::uint64_t seed, long number) const;
 
   /// The scene of some numbers; none if bodies of entries with draws overlap others. Throws as sceneOf does.
-  std::optional<DrawnScene> possibleSceneOf(const UniformSource& uniform) const;
+  std::optional<DrawnScene> possibleSceneOf(const UniformSource& uniform,
+                                            const std::vector<NamedBumpChange>& bumpChanges) const;
 
   /// Whether each of its scenes has wishes, and as many.
   bool hasWishes() const;
+
+  /// Whether its scenes may have bumps.
+  bool hasBumps() const { return memberOf(document_, "bumps") != nullptr; }
 
   /// JSON pointers of all draws.
   std::vector<std::string> places() const { return drawPlaces(document_); }

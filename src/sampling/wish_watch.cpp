@@ -13,6 +13,7 @@
 #include "math/elementary.h"
 #include "simulate/overlap_meter.h"
 #include "simulate/simulate.h"
+#include "simulate/world.h"
 
 namespace cradle {
 namespace {
@@ -142,13 +143,17 @@ WishedMotion simulateWishes(const Scene& scene) {
   SimulationSink sink{[&](const Frame& frame) { watch.note(frame); }, [&](const Event& event) { watch.note(event); },
                       [](const std::string&) {}};
   if (watch.asksForContacts()) sink.contact = [&](const LastingContact& contact) { watch.note(contact); };
+  ImpactCounts impacts;
   try {
-    simulate(scene, sink);
+    World run(scene);
+    simulate(scene, run, sink);
+    for (const auto& [body, count] : run.bumpCounts())
+      if (count > 0) impacts[scene.bodies[static_cast<std::size_t>(body)].name] = count;
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::unstable) throw;
-    return {unmet(scene.wishes.size()), -kInfinity};
+    return {unmet(scene.wishes.size()), -kInfinity, {}};
   }
-  return {watch.outcomes(), logLikelihood(scene.wishes, watch.outcomes())};
+  return {watch.outcomes(), logLikelihood(scene.wishes, watch.outcomes()), std::move(impacts)};
 }
 
 bool areAllMet(const std::vector<WishOutcome>& outcomes) {

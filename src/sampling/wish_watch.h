@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "sampling/bump_changes.h"
 #include "scene/scene.h"
 #include "simulate/assembly.h"
 #include "trajectory/trajectory.h"
@@ -60,6 +61,7 @@ double logLikelihood(const std::vector<Wish>& wishes, const std::vector<WishOutc
 struct WishedMotion {
   std::vector<WishOutcome> outcomes;
   double logLikelihood = 0;  // -infinity if the run became unstable: it cannot be, and meets nothing
+  ImpactCounts impacts = {};
 };
 
 /// Those of a motion that is none.

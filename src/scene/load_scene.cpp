@@ -14,6 +14,7 @@
 #include "scene/draws.h"
 #include "scene/json_document.h"
 #include "scene/parse_bodies.h"
+#include "scene/parse_bumps.h"
 #include "scene/parse_camera.h"
 #include "scene/parse_captions.h"
 #include "scene/parse_links.h"
@@ -63,6 +64,7 @@ SceneDraft parseText(const JsonValue& document, FaultList& faults) {
   parsePushes(root, draft);
   parseCamera(root, draft);
   parseCaptions(root, draft);
+  parseBumps(root, draft);
   parseWishes(root, draft);
   root.rejectUnknownKeys();
   completeLinks(draft, faults);

@@ -283,6 +283,20 @@ struct Wish {
   double deviation = 1;                                   // rad of UpWish, else m; > 0
 };
 
+/// From that impact of a body on, its bumps are of another seed.
+struct BumpChange {
+  int body = 0;
+  int impact = 1;  // >= 1: of those of the body that have bumps
+  std::uint64_t seed = 0;
+};
+
+/// Surfaces are not as smooth as their shapes: normals of impacts are tilted at random.
+struct Bumps {
+  double deviation = 0;  // rad, >= 0: standard deviation of each of the two angles across a normal
+  std::uint64_t seed = 0;
+  std::vector<BumpChange> changes;
+};
+
 struct Scene {
   std::string path, text;  // the file itself
   std::string name, description;
@@ -312,6 +326,7 @@ struct Scene {
   Look look = Look::light;
   std::vector<Caption> captions;
   std::optional<TitleCard> titleCard;
+  std::optional<Bumps> bumps;
   std::vector<Wish> wishes;
 };
 

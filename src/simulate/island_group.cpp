@@ -305,6 +305,8 @@ IslandHistory IslandGroup::historyOf(const std::vector<int>& clusters, const std
   const auto isElsewhere = [&](int sceneBody) { return !isAmong(clusters_.of(sceneBody)); };
   IslandHistory history;
   for (const Island* old : former) {
+    for (const auto& [body, count] : old->historyAtStart.bumps)
+      if (isAmong(clusters_.of(body))) history.bumps[body] = count;
     const auto& end = old->historyAtStart.promiseEnd;
     if (!end || std::all_of(end->bodies.begin(), end->bodies.end(), isElsewhere)) continue;
     history.promiseEnd = history.promiseEnd ? bothOf(*history.promiseEnd, *end) : *end;
@@ -474,8 +476,14 @@ void IslandGroup::accept() {
     island.evaluationsBefore = island.solver->evaluations();
     island.hasMoved = false;
     if (std::exchange(island.stops, false)) island.solver->stopAt(scene_.duration);
-    island.historyAtStart = island.solver->history();
+    island.historyAtStart = island.solver->history(start_.time);
   }
+}
+
+BumpCounts IslandGroup::bumpCounts() const {
+  BumpCounts all;
+  for (const Island& island : islands_) all.merge(island.solver->history(start_.time).bumps);
+  return all;
 }
 
 /// Takes events, warnings, corrections and ends of promises of all islands up to a time (s).

@@ -56,6 +56,9 @@ class IslandGroup {
   Corrections& corrections() { return corrections_; }
   const std::optional<PromiseEnd>& promiseEnd() const { return promiseEnd_; }
 
+  /// As IslandSolver's, up to the end of the last window.
+  BumpCounts bumpCounts() const;
+
   /// How many islands there are now.
   std::size_t islandCount() const { return islands_.size(); }
 

@@ -53,6 +53,7 @@ IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMe
       promiseEnd_(std::move(history.promiseEnd)),
       hasLeftEvents_(history.hasLeftEvents),
       jointStates_(island_.assembly.joints.size()) {
+  island_.bumps.goOnFrom(history.bumps);
   if (history.isInContactSteps)
     changeToSteps();
   else if (method.isAdaptive())

@@ -22,6 +22,7 @@ struct IslandHistory {
   std::optional<PromiseEnd> promiseEnd;
   bool hasLeftEvents = false;  // for contact steps, once
   bool isInContactSteps = false;
+  BumpCounts bumps;
 };
 
 /// An island in motion, with a clock of its own. Time goes on in steps of the method.
@@ -96,10 +97,15 @@ class IslandSolver {
   /// Pushes that act at a time (s) up to the last step's end.
   std::vector<StartedPush> pushesAt(double time) const { return island_.pushes.startedBy(time); }
 
-  /// What an island goes on with that begins from the last step's end.
-  IslandHistory history() const {
+  /// Impacts with bumps of each scene body, up to the last step's end.
+  BumpCounts bumpCounts() const { return island_.bumps.countsBy(island_.time); }
+
+  /// What an island goes on with that begins from the last step's end; of its impacts those by `time` (s), which is not
+  /// after that.
+  IslandHistory history(double time) const {
     const bool leavesEvents = events_ && !events_->fallbackReason().empty();
-    return {promiseEnd_, hasLeftEvents_ || leavesEvents, steps_ != nullptr || leavesEvents};
+    return {promiseEnd_, hasLeftEvents_ || leavesEvents, steps_ != nullptr || leavesEvents,
+            island_.bumps.countsBy(time)};
   }
 
  private:

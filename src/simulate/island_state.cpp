@@ -26,6 +26,7 @@ IslandState::IslandState(const Scene& source, Assembly parts)
       log(assembly),
       resting(assembly.mechanism, assembly.geometry, equations),
       pushes(scene, assembly, log),
+      bumps(scene, assembly),
       search(assembly.geometry),
       time(assembly.startTime),
       state(assembly.state),

@@ -9,6 +9,7 @@
 #include "dynamics/integrators/step.h"
 #include "simulate/assembly.h"
 #include "simulate/events/event_log.h"
+#include "simulate/impact_bumps.h"
 #include "simulate/push_schedule.h"
 #include "simulate/resting_bodies.h"
 
@@ -66,6 +67,7 @@ struct IslandState {
   EventLog log;
   RestingBodies resting;
   PushSchedule pushes;
+  ImpactBumps bumps;
   ImpactSearch search;
   double time;    // s
   VectorX state;  // after all events of now

@@ -43,6 +43,11 @@ World::World(const Scene& scene) : plan_(planOf(scene)), joints_(scene.hinges.si
   for (std::size_t i = 0; i < assemblies.size(); ++i) {
     startWarnings_.insert(startWarnings_.end(), assemblies[i].warnings.begin(), assemblies[i].warnings.end());
     hasLongSteps_ = hasLongSteps_ || assemblies[i].hasLongSteps;
+    if (scene.bumps && plan_.islands[i].method.kind == MotionKind::pile)
+      startWarnings_.push_back(
+          fmt::format("{}: impacts of {} have no bumps: many bodies may touch, and soft contacts "
+                      "decide; ask for an accuracy of {} or finer to have them",
+                      scene.path, namesOfBodies(plan_.islands[i].bodies, scene), kVisualAccuracy));
     move(scene, i, std::move(assemblies[i]));
   }
   decideStartPromises(scene);
@@ -247,6 +252,12 @@ std::map<std::string, long> World::correctionCounts() const {
   std::map<std::string, long> counts;
   forEachSolver([&](auto& solver, std::size_t) { solver.corrections().addCounts(counts); });
   return counts;
+}
+
+BumpCounts World::bumpCounts() const {
+  BumpCounts all;
+  forEachSolver([&](const auto& solver, std::size_t) { all.merge(solver.bumpCounts()); });
+  return all;
 }
 
 long World::evaluations() const {

@@ -61,6 +61,9 @@ class World {
   /// How often each kind of correction has happened so far.
   std::map<std::string, long> correctionCounts() const;
 
+  /// Impacts with bumps of each scene body so far; none for those that have had none.
+  BumpCounts bumpCounts() const;
+
   /// Evaluations of equations of motion, and of closed forms, so far.
   long evaluations() const;
 

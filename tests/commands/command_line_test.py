@@ -290,6 +290,44 @@ class Samples(InTemporaryFolder):
                      "2", "-o", self.path("parts"))
         self.refuses(5, ["sample_000000", "is of another chain"], "sample", self.wished(), "-n", "180", "-o", self.path("parts"))
 
+    def bumpy(self, **changes):
+        """Nothing is drawn but bumps: a ball that bounces is wished to go aside, which it does in 1 of 10 samples."""
+        ball = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 1, 0], "material": "rubber"}
+        rubber = {"rubber": {"restitution": 0.8, "staticFriction": 0, "dynamicFriction": 0}}
+        wish = {"body": "ball", "inside": {"min": [0.5, -9, -9], "max": [9, 9, 9]}, "deviation": 0.1}
+        return self.drawn(**{"bodies": [{**self.GROUND, "material": "rubber"}, ball], "materials": rubber, "duration": 2,
+                             "bumps": {"deviationDegrees": 5}, "wishes": [wish], **changes})
+
+    def test_samples_have_bumps_of_their_own(self):
+        cradle("sample", self.bumpy(), "-n", "4", "--simulate", "-q", "-o", self.path("set"))
+        samples = self.index("set")
+        self.assertEqual(len({sample["stateHash"] for sample in samples}), 4)
+        for sample in samples:
+            drawn = json.loads(content(self.path(f"set/{sample['folder']}/scene.json")))
+            self.assertEqual(drawn["bumps"]["seed"], sample["draws"]["/bumps/seed"])
+        given = self.bumpy(bumps={"deviationDegrees": 5, "seed": 3})
+        cradle("sample", given, "-n", "2", "--simulate", "-q", "-o", self.path("given"))
+        self.assertEqual(len({sample["stateHash"] for sample in self.index("given")}), 1)
+
+    def test_chains_change_bumps_and_go_on_with_the_same_bits(self):
+        arguments = ("sample", self.bumpy(), "-n", "120", "--chains", "2", "--simulate", "-q", "-o")
+        for folder in ("whole", "parts"):
+            result = cradle(*arguments, self.path(folder))
+            self.assertEqual(result.returncode, 0, result.stderr)
+        whole = self.index("whole")
+        self.assertGreater(sum(sample["wishes"][0]["met"] for sample in whole), 40)
+        changed = [sample["folder"] for sample in whole
+                   if "changes" in json.loads(content(self.path(f"whole/{sample['folder']}/scene.json")))["bumps"]]
+        self.assertGreater(len(changed), 40)
+        again = self.path("again.sqlite")
+        last = max(folder for folder in changed if os.path.exists(self.path(f"whole/{folder}/trajectory.sqlite")))
+        self.assertEqual(cradle("simulate", self.path(f"whole/{last}/scene.json"), "-o", again).returncode, 0)
+        self.assertEqual(cradle("compare", self.path(f"whole/{last}/trajectory.sqlite"), again).returncode, 0)
+        for number in range(30, 60):
+            shutil.rmtree(self.path(f"parts/sample_{number:06}"))
+        self.assertEqual(cradle(*arguments, self.path("parts")).returncode, 0)
+        self.assertEqual(self.index("parts"), whole)
+
     def test_samples_and_their_trajectories_have_the_horizon_of_their_motion(self):
         arguments = ("sample", self.wished(), "-n", "2", "-q", "-o", self.path("set"))
         cradle(*arguments, "--simulate")

@@ -54,6 +54,12 @@ double logLikelihoodOf(const Choice& choice) {
   return 2.3 * ((choice.a + 2 * b) % 3);
 }
 
+MetropolisChain::Evaluate evaluationOf(const JsonValue& document) {
+  return [&document](const UniformSource& uniform, const std::vector<NamedBumpChange>&) {
+    return ChainOutcome{logLikelihoodOf(choiceOf(document, uniform))};
+  };
+}
+
 int cellOf(const Choice& choice) {
   return 4 * choice.a + std::min(static_cast<int>(choice.b), 3);
 }
@@ -66,9 +72,8 @@ struct ChainOfChoices {
 ChainOfChoices runChoices(int steps) {
   FaultList faults("test", ErrorKind::scene);
   const JsonValue document = readJson(kChoices, faults);
-  MetropolisChain chain(drawPlaces(document),
-                        [&](const UniformSource& uniform) { return logLikelihoodOf(choiceOf(document, uniform)); },
-                        RandomStream(7), {{{"/a", {0.5}}, {"/b", {0.3}}}, -std::numeric_limits<double>::infinity()});
+  MetropolisChain chain(drawPlaces(document), false, evaluationOf(document), RandomStream(7),
+                        {{{"/a", {0.5}}, {"/b", {0.3}}}, -std::numeric_limits<double>::infinity()});
   ChainOfChoices result;
   for (int i = 1; i <= steps; ++i) {
     chain.step(i);
@@ -118,15 +123,54 @@ TEST(MetropolisChains, KeepTheDistributionOfDrawsThatAreNeededNowAndThen) {
 TEST(MetropolisChains, StepsAreFunctionsOfTheirStateAndNumber) {
   FaultList faults("test", ErrorKind::scene);
   const JsonValue document = readJson(kChoices, faults);
-  const auto likelihood = [&](const UniformSource& uniform) { return logLikelihoodOf(choiceOf(document, uniform)); };
-  MetropolisChain whole(drawPlaces(document), likelihood, RandomStream(3), {{{"/a", {0.1}}, {"/b", {0.6}}}, 0});
+  const MetropolisChain::Evaluate evaluate = evaluationOf(document);
+  MetropolisChain whole(drawPlaces(document), false, evaluate, RandomStream(3), {{{"/a", {0.1}}, {"/b", {0.6}}}, 0});
   for (int i = 1; i <= 50; ++i) whole.step(i);
-  MetropolisChain first(drawPlaces(document), likelihood, RandomStream(3), {{{"/a", {0.1}}, {"/b", {0.6}}}, 0});
+  MetropolisChain first(drawPlaces(document), false, evaluate, RandomStream(3), {{{"/a", {0.1}}, {"/b", {0.6}}}, 0});
   for (int i = 1; i <= 20; ++i) first.step(i);
-  MetropolisChain second(drawPlaces(document), likelihood, RandomStream(3), first.state());
+  MetropolisChain second(drawPlaces(document), false, evaluate, RandomStream(3), first.state());
   for (int i = 21; i <= 50; ++i) second.step(i);
   EXPECT_EQ(second.state().numbers, whole.state().numbers);
   EXPECT_EQ(second.state().logLikelihood, whole.state().logLikelihood);
+}
+
+// A walk whose length depends on its bumps: each of the impacts 1, 2, ... adds a bit, that of its seed and number, and
+// the walk ends after impact 2 if the first bit is 0, else after impact 4. A sum of three or more bits is three times
+// as likely as others. By enumeration: half of the walks are short and have 2 bits, whose first is 0; the others have
+// 4, of which the first is 1, so that P(sum >= 3) of these is P(of 3 bits >= 2) = 1/2. Of all walks 1/4 are weighed by
+// 3, 3/4 by 1: 3/4 : 3/4. A chain whose proposals are not weighed by the numbers of impacts comes to another share.
+TEST(MetropolisChains, OverBumpsHaveTheSharesOfTheirEnumeration) {
+  const auto bitOf = [](std::uint64_t seed, int impact) {
+    return RandomStream(seed).at(static_cast<std::uint64_t>(impact)).nextUniform() < 0.5 ? 0 : 1;
+  };
+  const auto seedOf = [](std::uint64_t seed, const std::vector<NamedBumpChange>& changes, int impact) {
+    int from = 0;
+    for (const NamedBumpChange& change : changes)
+      if (change.impact <= impact && change.impact >= from) from = change.impact, seed = change.seed;
+    return seed;
+  };
+  const auto outcomeOf = [&](const UniformSource& uniform, const std::vector<NamedBumpChange>& changes) {
+    const auto seed = static_cast<std::uint64_t>(0x1p52 * uniform(kBumpSeedPlace, 0));
+    int sum = bitOf(seedOf(seed, changes, 1), 1);
+    const int count = sum == 0 ? 2 : 4;
+    for (int impact = 2; impact <= count; ++impact) sum += bitOf(seedOf(seed, changes, impact), impact);
+    return ChainOutcome{sum >= 3 ? std::log(3.0) : 0, {{"ball", count}}};
+  };
+  const ChainOutcome start = outcomeOf([](const std::string&, std::size_t) { return 0.3; }, {});
+  MetropolisChain chain({}, true, outcomeOf, RandomStream(5),
+                        {{{kBumpSeedPlace, {0.3}}}, start.logLikelihood, {}, start.impacts});
+  std::vector<double> isLarge, isLong;
+  for (int i = 1; i <= 40'000; ++i) {
+    chain.step(i);
+    isLarge.push_back(chain.state().logLikelihood > 0), isLong.push_back(chain.state().impacts.at("ball") == 4);
+  }
+  const auto expectShare = [](const std::vector<double>& steps, double expected) {
+    const double count = static_cast<double>(steps.size());
+    const double share = std::accumulate(steps.begin(), steps.end(), 0.0) / count;
+    EXPECT_NEAR(share, expected, 5 * std::sqrt(expected * (1 - expected) * autocorrelationTime(steps) / count));
+  };
+  expectShare(isLarge, 0.5);
+  expectShare(isLong, (0.25 * 3 + 0.25) / 1.5);
 }
 
 }  // namespace

@@ -108,11 +108,11 @@ TEST_F(Wishes, GiveTheLandingPointOfABallItsPosteriorDensity) {
       R"("duration": 1, "output": {"framesPerSecond": 1}, )" +
       bodies(ball(R"("position": [0, 1, 0], "linearVelocity": [{"draw": {"normal": [0, 1]}}, 0, 0])")) +
       R"(, "wishes": [{"body": "ball", "inside": {"min": [2, -9, -9], "max": [2, 9, 9]}, "deviation": 0.5}])");
-  const auto likelihood = [&](const UniformSource& uniform) {
-    return simulateWishes(sampler.sceneOf(uniform).loaded.scene).logLikelihood;
+  const auto likelihood = [&](const UniformSource& uniform, const std::vector<NamedBumpChange>&) {
+    return ChainOutcome{simulateWishes(sampler.sceneOf(uniform).loaded.scene).logLikelihood};
   };
   const DrawnScene start = sampler.sample(4, 0);
-  MetropolisChain chain(sampler.places(), likelihood, RandomStream(4),
+  MetropolisChain chain(sampler.places(), false, likelihood, RandomStream(4),
                         {start.numbers, simulateWishes(start.loaded.scene).logLikelihood});
   std::vector<double> all, thinned;
   for (int i = 1; i <= 6000; ++i) {

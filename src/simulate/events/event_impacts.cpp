@@ -189,13 +189,31 @@ double EventImpacts::resolveIsland(const DisjointSets& islands, int island, cons
   for (const ImpactContact& rope : ropes)
     if (isIn(rope.contact)) impacts.push_back(rope);
   const VectorX approach = island_.state;
-  const double zenoTime = resolveImpact(impacts, still);
+  const double zenoTime = resolveWithBumps(contacts.size(), impacts, still);
   requireRoom(approach, impacts, contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i)
     addImpulse(contacts[i], impacts[i].contact.normal.dot(impacts[i].impulse), impulses);
   std::size_t next = contacts.size();
   for (ImpactContact& rope : ropes)
     if (isIn(rope.contact)) rope.impulse = impacts[next++].impulse;
+  return zenoTime;
+}
+
+/// One impact, in which normals of the first `contacts` are tilted where the scene has bumps, and then one without
+/// bumps where that has left contacts closing. Returns the Zeno time (s).
+double EventImpacts::resolveWithBumps(std::size_t contacts, std::vector<ImpactContact>& impacts, double still) {
+  std::vector<ImpactContact> left = impacts;  // to what still closes then
+  const bool isTilted =
+      island_.bumps.tilt(island_.time, island_.state, std::span<ImpactContact>(impacts).first(contacts));
+  const double zenoTime = resolveImpact(impacts, still);
+  if (!isTilted) return zenoTime;
+  if (std::any_of(left.begin(), left.end(),
+                  [&](const ImpactContact& impact) { return openingSpeed(impact.contact, island_.state) < -still; }))
+    resolveImpact(left, still);
+  for (std::size_t i = 0; i < impacts.size(); ++i) {
+    impacts[i].contact = left[i].contact;
+    impacts[i].impulse += left[i].impulse;
+  }
   return zenoTime;
 }
 

@@ -56,6 +56,7 @@ class EventImpacts {
   double resolveNext(const ImpactSequence& sequence, double still, std::vector<ContactImpulse>& impulses);
   double resolveIsland(const DisjointSets& islands, int island, const ImpactSequence& sequence, double still,
                        std::vector<ImpactContact>& ropes, std::vector<ContactImpulse>& impulses);
+  double resolveWithBumps(std::size_t contacts, std::vector<ImpactContact>& impacts, double still);
   double resolveImpact(std::vector<ImpactContact>& impacts, double still);
   bool resolveByThoseThatClose(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, double still,
                                ImpactFaults& faults);

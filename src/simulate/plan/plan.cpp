@@ -178,7 +178,7 @@ void choose(const Scene& scene, IslandPlan& island) {
   if (scene.method) {
     island.method = namedMethod(scene);
     island.reason = "the scene names the method";
-  } else if (mayTouchSomething && !isActedUpon(island) && hardSpheresOf(scene, island)) {
+  } else if (mayTouchSomething && !scene.bumps && !isActedUpon(island) && hardSpheresOf(scene, island)) {
     island.method = {MotionKind::elasticFlight, "closed form between collisions"};
     island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
     island.notNeeded.push_back("no steps, no rotation: nothing turns balls that touch without friction");

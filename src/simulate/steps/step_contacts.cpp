@@ -39,6 +39,7 @@ StepContacts::StepContacts(IslandState& island, const ChosenMethod& method)
     : assembly_(island.assembly),
       log_(island.log),
       resting_(island.resting),
+      bumps_(island.bumps),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       ties_(tiesOf(assembly_)),
       tieSolver_(ties_, assembly_.mechanism.bodies),
@@ -167,6 +168,7 @@ void StepContacts::recordAndLetSleep(double time, VectorX& state) {
   for (const SteppedContact& stepped : stepping_.contacts()) {
     const double impulse = stepped.contact.normal.dot(stepped.impulse);
     if (impulse <= kRestSpeedFloor * lightest(stepped.contact)) continue;
+    if (stepped.isImpact) bumps_.noteWithout(time, stepped.contact, impulse / lightest(stepped.contact), log_);
     acting.push_back(stepped.contact);
     record(time, stepped.contact, stepped.impulse, stepped.isImpact);
   }
@@ -280,8 +282,7 @@ void StepContacts::resolveImpactIslands(double time, const VectorX& before, Vect
   for (std::vector<ImpactContact>& impacts : findImpacts(before, state)) {
     if (impacts.empty()) continue;
     const VectorX approach = state;
-    log_.recordFaults(time, impacts,
-                      resolveImpact(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state));
+    resolveWithBumps(time, impacts, state);
     const bool isHard = std::any_of(impacts.begin(), impacts.end(), [&](const ImpactContact& impact) {
       return closingSpeed(impact.contact, approach) > tolerances().minImpactSpeed(timeStep_);
     });
@@ -291,6 +292,24 @@ void StepContacts::resolveImpactIslands(double time, const VectorX& before, Vect
       const double impulse = impact.contact.normal.dot(impact.impulse);
       if (impulse > 0) record(time, impact.contact, impact.impulse, isHard);
     }
+  }
+}
+
+/// One impact, in which normals are tilted where the scene has bumps, and then one without bumps where that has left
+/// contacts closing.
+void StepContacts::resolveWithBumps(double time, std::vector<ImpactContact>& impacts, VectorX& state) {
+  const ImpulseResponse response(assembly_.mechanism.bodies, solver_);
+  std::vector<ImpactContact> left = impacts;  // to what still closes then
+  const bool isTilted = bumps_.tilt(time, state, impacts);
+  log_.recordFaults(time, impacts, resolveImpact(impacts, response, state));
+  if (!isTilted) return;
+  if (std::any_of(left.begin(), left.end(), [&](const ImpactContact& impact) {
+        return closingSpeed(impact.contact, state) > tolerances().minClosingSpeed(timeStep_);
+      }))
+    log_.recordFaults(time, left, resolveImpact(left, response, state));
+  for (std::size_t i = 0; i < impacts.size(); ++i) {
+    impacts[i].contact = left[i].contact;
+    impacts[i].impulse += left[i].impulse;
   }
 }
 

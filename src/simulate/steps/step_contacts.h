@@ -87,12 +87,14 @@ class StepContacts {
   void recordFaults(double time);
   void wakeTouched(double time, const VectorX& state);
   void resolveImpactIslands(double time, const VectorX& before, VectorX& state);
+  void resolveWithBumps(double time, std::vector<ImpactContact>& impacts, VectorX& state);
   DisjointSets findImpactIslands() const;
   std::vector<std::vector<ImpactContact>> findImpacts(const VectorX& before, const VectorX& state) const;
 
   const Assembly& assembly_;
   EventLog& log_;
   RestingBodies& resting_;
+  ImpactBumps& bumps_;
   ConstraintSolver solver_;
   Constraints ties_;  // without taut limits, which contacts may let go
   ConstraintSolver tieSolver_;
