@@ -111,6 +111,8 @@ void addSimulate(CLI::App& app, CommandLine& line) {
           "--until-it-fails", line.simulation.untilItFails,
           "where the run becomes unstable, keep the frames before that as a whole trajectory, to film the failure")
       ->excludes("--strict");
+  simulate->add_flag("--fresh", line.simulation.isFresh,
+                     "begin anew, where FILE.part of a run that was ended would be gone on with");
   simulate->add_flag("--check-accuracy", line.simulation.checksAccuracy,
                      "run again, finer, and print the error of each body; where the scene is chaotic, say so");
 

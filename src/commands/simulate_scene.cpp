@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "commands/body_list.h"
@@ -19,6 +21,7 @@
 #include "core/part_lock.h"
 #include "core/printable.h"
 #include "core/progress.h"
+#include "core/read_file.h"
 #include "overlay/caption_check.h"
 #include "render/camera_path.h"
 #include "scene/count_bodies.h"
@@ -27,6 +30,7 @@
 #include "scene/parse_settings.h"
 #include "scene/ranges.h"
 #include "simulate/assembly.h"
+#include "simulate/run_record.h"
 #include "simulate/simulate.h"
 #include "simulate/start_overlaps.h"
 #include "simulate/strict_watch.h"
@@ -132,6 +136,138 @@ void checkAccuracy(const Scene& scene, const std::string& output, bool prints, b
   }
 }
 
+/// Of all that a motion depends on, and of the program.
+std::string fingerprintOf(const Scene& scene, const TrajectoryHeader& header) {
+  constexpr std::uint64_t kMaxProgram = 1'000'000'000;  // bytes
+  static const std::string program = textHash(readFile("/proc/self/exe", kMaxProgram, ErrorKind::output));
+  Hash hash;
+  const auto add = [&hash](const std::string& text) {
+    const std::string line = text + '\n';
+    hash.add(std::as_bytes(std::span(line)));
+  };
+  add(program), add(scene.text), add(header.plan), add(header.method);
+  add(fmt::format("{} {} {} {}", scene.accuracy, scene.duration, scene.method ? int(scene.method->name) : -1,
+                  scene.method ? scene.method->timeStep.value_or(0) : 0));
+  for (const Model& mesh : header.meshes) {
+    hash.add(std::as_bytes(std::span(mesh.drawn.vertices)));
+    hash.add(std::as_bytes(std::span(mesh.drawn.triangles)));
+  }
+  return hash.hex();
+}
+
+/// The checkpoint of an unfinished run of that scene, if there is one that can be gone on from.
+std::optional<Checkpoint> checkpointIn(const std::string& part, const std::function<std::string()>& fingerprint) {
+  if (!isTrajectoryFile(part)) return std::nullopt;
+  try {
+    const TrajectoryReader told(part);
+    std::optional<Checkpoint> checkpoint = told.checkpoint();
+    if (!checkpoint || checkpoint->fingerprint != fingerprint()) return std::nullopt;
+    runRecordOf(checkpoint->record);
+    for (long frame = 0; frame <= checkpoint->frame; ++frame) told.readFrame(frame);
+    return checkpoint;
+  } catch (const Error&) {  // damaged
+    return std::nullopt;
+  }
+}
+
+/// Of a run, for its checkpoints; without one none are kept.
+using Fingerprint = std::function<std::string()>;
+
+/// A simulation into a trajectory file.
+class RunInto {
+ public:
+  /// Keeps references; `watch` may be null.
+  RunInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet)
+      : writer_(writer),
+        scene_(scene),
+        world_(world),
+        watch_(watch),
+        cameras_(scene, [&writer](const CameraPose& camera) { writer.append(camera); }),
+        progress_("Simulating", "frames", lastFrame(scene) + 1, quiet) {}
+
+  /// What an ended run has told up to its checkpoint.
+  void note(const TrajectoryReader& told, const Checkpoint& checkpoint) {
+    const std::vector<Event> events = told.events();
+    auto event = events.begin();
+    for (long number = 0; number <= checkpoint.frame; ++number) {
+      throwIfInterrupted();
+      const Frame frame = told.readFrame(number);
+      for (; event != events.end() && event->time <= frame.time; ++event) cameras_.note(*event);
+      cameras_.note(frame);
+      if (watch_) watch_->check(frame);
+    }
+    progress_.skipTo(checkpoint.frame + 1);
+  }
+
+  /// Simulates what is missing behind the record of a checkpoint, or all, and finishes the file.
+  void finish(const std::string& record, const Fingerprint& fingerprint) {
+    const RunCost cost = simulateMissing(record, fingerprint);
+    cameras_.finish();
+    if (watch_) watch_->finish();
+    writer_.finish(cost);
+  }
+
+  /// The same, but a run that becomes unstable after its first frame is finished as far as it went.
+  std::optional<std::string> finishOrFail(const std::string& record, const Fingerprint& fingerprint) {
+    CpuStopwatch stopwatch;
+    stopwatch.start();
+    try {
+      finish(record, fingerprint);
+      return std::nullopt;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::unstable || !writer_.hasFrame()) throw;
+      stopwatch.stop();
+      writer_.finish({stopwatch.seconds(), world_.evaluations(), world_.correctionCounts(),
+                      fmt::format("{}{}", kFailedRun, error.what())});
+      return error.what();
+    }
+  }
+
+ private:
+  RunCost simulateMissing(const std::string& record, const Fingerprint& fingerprint) {
+    SimulationSink sink{[this](const Frame& frame) {
+                          writer_.append(frame);
+                          cameras_.note(frame);
+                          progress_.update(frame.number + 1);
+                          if (watch_) watch_->check(frame);
+                        },
+                        [this](const Event& event) {
+                          writer_.append(event);
+                          cameras_.note(event);
+                        },
+                        [this](const std::string& warning) {
+                          progress_.endLine();
+                          warn(warning);
+                        },
+                        [this](const Correction& correction) {
+                          if (watch_) watch_->note(correction);
+                        },
+                        [this](const PromiseEnd& end) {
+                          if (watch_) watch_->note(end);
+                        },
+                        [this](const LastingContact& contact) { writer_.append(contact); }};
+    if (fingerprint)
+      sink.checkpoint = [&](Checkpoint checkpoint) {
+        checkpoint.fingerprint = fingerprint();
+        writer_.append(checkpoint);
+      };
+    sink.reached = [this](double time) { progress_.showTime(time); };
+    try {
+      return simulate(scene_, world_, sink, record);
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::unstable) cameras_.finish();  // its frames may be kept
+      throw;
+    }
+  }
+
+  TrajectoryWriter& writer_;
+  const Scene& scene_;
+  World& world_;
+  StrictWatch* watch_;
+  RunCameras cameras_;
+  Progress progress_;
+};
+
 }  // namespace
 
 Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
@@ -143,57 +279,13 @@ Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
   return std::move(loaded.scene);
 }
 
-void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet) {
-  Progress progress("Simulating", "frames", lastFrame(scene) + 1, quiet);
-  RunCameras cameras(scene, [&writer](const CameraPose& camera) { writer.append(camera); });
-  const SimulationSink sink{[&](const Frame& frame) {
-                              writer.append(frame);
-                              cameras.note(frame);
-                              progress.update(frame.number + 1);
-                              if (watch) watch->check(frame);
-                            },
-                            [&](const Event& event) {
-                              writer.append(event);
-                              cameras.note(event);
-                            },
-                            [&](const std::string& warning) {
-                              progress.endLine();
-                              warn(warning);
-                            },
-                            [&](const Correction& correction) {
-                              if (watch) watch->note(correction);
-                            },
-                            [&](const PromiseEnd& end) {
-                              if (watch) watch->note(end);
-                            },
-                            [&](const LastingContact& contact) { writer.append(contact); },
-                            [&](double time) { progress.showTime(time); }};
-  RunCost cost;
-  try {
-    cost = simulate(scene, world, sink);
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::unstable) cameras.finish();  // its frames may be kept
-    throw;
-  }
-  cameras.finish();
-  if (watch) watch->finish();
-  writer.finish(cost);
+void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, bool quiet) {
+  RunInto(writer, scene, world, nullptr, quiet).finish("", {});
 }
 
 std::optional<std::string> simulateUntilItFails(TrajectoryWriter& writer, const Scene& scene, World& world,
                                                 bool quiet) {
-  CpuStopwatch stopwatch;
-  stopwatch.start();
-  try {
-    simulateInto(writer, scene, world, nullptr, quiet);
-    return std::nullopt;
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::unstable || !writer.hasFrame()) throw;
-    stopwatch.stop();
-    writer.finish({stopwatch.seconds(), world.evaluations(), world.correctionCounts(),
-                   fmt::format("{}{}", kFailedRun, error.what())});
-    return error.what();
-  }
+  return RunInto(writer, scene, world, nullptr, quiet).finishOrFail("", {});
 }
 
 void simulateScene(const std::string& scenePath, const std::string& output, const SimulateOptions& options,
@@ -205,7 +297,14 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   refuseUnsupported(scene);
   World world(scene);
   requireNoWriter(partPath(output));  // planning may have taken long
-  TrajectoryWriter writer(output, headerOf(scene, world.plan()));
+  const TrajectoryHeader header = headerOf(scene, world.plan());
+  const Fingerprint fingerprint = [&] { return fingerprintOf(scene, header); };
+  const std::optional<Checkpoint> from = options.isFresh ? std::nullopt : checkpointIn(partPath(output), fingerprint);
+  std::optional<TrajectoryReader> told;
+  if (from) told.emplace(partPath(output));
+  std::optional<TrajectoryWriter> file;
+  from ? file.emplace(output, header, *from) : file.emplace(output, header);
+  TrajectoryWriter& writer = *file;
   std::optional<StrictWatch> watch;
   if (options.isStrict) watch.emplace(scene, world.plan());
   const auto tellWhatIsKept = [&writer](ErrorKind kind, const std::string& what) {
@@ -213,9 +312,18 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
     throw Error(kind, "", kept.empty() ? what : fmt::format("{}; the frames up to then are in {}", what, kept));
   };
   try {
+    RunInto run(writer, scene, world, watch ? &*watch : nullptr, quiet);
+    if (from) {
+      if (!quiet)
+        show(stderr, "note: going on after frame {} of {}; --fresh begins anew\n", from->frame,
+             printableLine(partPath(output)));
+      run.note(*told, *from);
+      told.reset();
+    }
+    const std::string record = from ? from->record : "";
     if (!options.untilItFails)
-      simulateInto(writer, scene, world, watch ? &*watch : nullptr, quiet);
-    else if (const auto failure = simulateUntilItFails(writer, scene, world, quiet))
+      run.finish(record, fingerprint);
+    else if (const auto failure = run.finishOrFail(record, fingerprint))
       return warn(fmt::format("{}; {} has the frames up to then, whole", *failure, output));
   } catch (const Error& error) {
     tellWhatIsKept(error.kind(), error.what());

@@ -25,6 +25,7 @@ struct SimulateOptions {
   bool checksAccuracy = false;  // afterwards, by finer runs; printed, and the horizon goes into the trajectory
   bool findsHorizon = false;    // the same, not printed
   bool untilItFails = false;    // a run that becomes unstable leaves a whole trajectory of what was before
+  bool isFresh = false;         // a FILE.part that an ended run has left is replaced, and no run goes on with it
   bool isStrict = false;  // ends at the first broken promise or correction, or where bodies are too deep in others
 };
 
@@ -39,8 +40,8 @@ void checkScene(const std::string& scenePath, const SceneOptions& options);
 Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options);
 
 /// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr. `world` is at its
-/// start; `watch` may be null.
-void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet);
+/// start.
+void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, bool quiet);
 
 /// The same, but a run that becomes unstable after its first frame is finished as far as it went; its error is returned
 /// then, and told in the trajectory.

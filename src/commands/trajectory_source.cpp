@@ -151,7 +151,7 @@ void TrajectorySource::simulateBy(const Simulate& simulateInto) {
 }
 
 void TrajectorySource::simulate() {
-  simulateBy([this](TrajectoryWriter& writer, World& world) { simulateInto(writer, scene_, world, nullptr, quiet_); });
+  simulateBy([this](TrajectoryWriter& writer, World& world) { simulateInto(writer, scene_, world, quiet_); });
 }
 
 void TrajectorySource::simulateUntilItFails() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "simulate/energy_guard.h"
 
@@ -75,51 +76,59 @@ std::optional<double> Drift::firstBeyond(double most) const {
 }
 
 ConservationRecord::ConservationRecord(const Assembly& assembly, double accuracy)
+    : ConservationRecord(assembly, accuracy, {}) {
+  measures_.startTime = assembly.startTime;
+  measures_.start = invariantsOf(assembly.mechanism, assembly.state);
+  measures_.startSpin = momentumSizesOf(assembly.mechanism.bodies, assembly.state, measures_.start.momentum).sum;
+  const double gravity = assembly.mechanism.gravity.norm();
+  measures_.largestEnergy = measures_.start.kinetic;  // an impact may take all of it at once
+  for (const RigidBody& body : assembly.mechanism.bodies) {
+    const double gyration = radiusOfGyration(body);
+    measures_.largestEnergy += body.mass * (gravity * gyration + accuracy * accuracy);
+    measures_.largestMomentum += body.mass * accuracy;
+    measures_.largestSpin += body.mass * gyration * accuracy;
+  }
+}
+
+ConservationRecord::ConservationRecord(const Assembly& assembly, double accuracy, Measures measures)
     : assembly_(assembly),
       ratio_(kMaxNumericalRatio * accuracy),
       isIsolated_(isIsolated(assembly)),
-      start_(invariantsOf(assembly.mechanism, assembly.state)),
-      startSpin_(momentumSizesOf(assembly.mechanism.bodies, assembly.state, start_.momentum).sum) {
-  const double gravity = assembly.mechanism.gravity.norm();
-  largestEnergy_ = start_.kinetic;  // an impact may take all of it at once
-  for (const RigidBody& body : assembly.mechanism.bodies) {
-    const double gyration = radiusOfGyration(body);
-    largestEnergy_ += body.mass * (gravity * gyration + accuracy * accuracy);
-    largestMomentum_ += body.mass * accuracy;
-    largestSpin_ += body.mass * gyration * accuracy;
-  }
-}
+      measures_(std::move(measures)) {}
 
 void ConservationRecord::measure(const VectorX& state) {
   measureEnergy(invariantsOf(assembly_.mechanism, state));
 }
 
 void ConservationRecord::measureEnergy(const Invariants& sums) {
-  largestEnergy_ = std::max({largestEnergy_, sums.kinetic, std::abs(sums.potential - start_.potential)});
+  measures_.largestEnergy =
+      std::max({measures_.largestEnergy, sums.kinetic, std::abs(sums.potential - measures_.start.potential)});
 }
 
 void ConservationRecord::add(double time, const VectorX& state) {
   const Invariants sums = invariantsOf(assembly_.mechanism, state);
   measureEnergy(sums);
   const double rounding = energyOfPlaceErrors(assembly_.mechanism, assembly_.radii, state, 0);
-  energy_.add(time, std::abs(numericalEnergy(state)) - rounding, ratio_ * largestEnergy_);
-  const auto addDissipation = [&](Dissipation& by, double taken) {
-    by.given.add(time, by.taken - taken - rounding, ratio_ * largestEnergy_);
+  measures_.energy.add(time, std::abs(numericalEnergy(state)) - rounding, ratio_ * measures_.largestEnergy);
+  const auto addDissipation = [&](Measures::Dissipation& by, double taken) {
+    by.given.add(time, by.taken - taken - rounding, ratio_ * measures_.largestEnergy);
     by.taken = std::max(by.taken, taken);
   };
-  addDissipation(byImpact_, impactEnergy(state));
-  addDissipation(byFriction_, frictionEnergy(state));
-  addDissipation(byDamping_, dampingEnergy(state));
+  addDissipation(measures_.byImpact, impactEnergy(state));
+  addDissipation(measures_.byFriction, frictionEnergy(state));
+  addDissipation(measures_.byDamping, dampingEnergy(state));
   if (isIsolated_) addMomenta(time, state, sums);
 }
 
 void ConservationRecord::addMomenta(double time, const VectorX& state, const Invariants& sums) {
   const MomentumSizes sizes = momentumSizesOf(assembly_.mechanism.bodies, state, sums.momentum);
-  const Vec3 byGravity = sizes.mass * (time - assembly_.startTime) * assembly_.mechanism.gravity;
-  largestMomentum_ = std::max(largestMomentum_, sizes.momentum);
-  largestSpin_ = std::max(largestSpin_, sizes.spin);
-  momentum_.add(time, (sums.momentum - start_.momentum - byGravity).norm(), ratio_ * largestMomentum_);
-  spin_.add(time, (sizes.sum - startSpin_).norm() - sizes.spinRounding, ratio_ * largestSpin_);
+  const Vec3 byGravity = sizes.mass * (time - measures_.startTime) * assembly_.mechanism.gravity;
+  measures_.largestMomentum = std::max(measures_.largestMomentum, sizes.momentum);
+  measures_.largestSpin = std::max(measures_.largestSpin, sizes.spin);
+  measures_.momentum.add(time, (sums.momentum - measures_.start.momentum - byGravity).norm(),
+                         ratio_ * measures_.largestMomentum);
+  measures_.spin.add(time, (sizes.sum - measures_.startSpin).norm() - sizes.spinRounding,
+                     ratio_ * measures_.largestSpin);
 }
 
 std::optional<ConservationRecord::Loss> ConservationRecord::firstLoss() const {
@@ -128,12 +137,12 @@ std::optional<ConservationRecord::Loss> ConservationRecord::firstLoss() const {
     const std::optional<double> time = drift.firstBeyond(ratio_ * largest);
     if (time && (!first || *time < first->time)) first = Loss{*time, sum};
   };
-  judge(energy_, largestEnergy_, "numerical energy");
-  judge(byImpact_.given, largestEnergy_, "energy that impacts gave");
-  judge(byFriction_.given, largestEnergy_, "energy that friction gave");
-  judge(byDamping_.given, largestEnergy_, "energy that damping gave");
-  judge(momentum_, largestMomentum_, "momentum that nothing gave");
-  judge(spin_, largestSpin_, "angular momentum that nothing gave");
+  judge(measures_.energy, measures_.largestEnergy, "numerical energy");
+  judge(measures_.byImpact.given, measures_.largestEnergy, "energy that impacts gave");
+  judge(measures_.byFriction.given, measures_.largestEnergy, "energy that friction gave");
+  judge(measures_.byDamping.given, measures_.largestEnergy, "energy that damping gave");
+  judge(measures_.momentum, measures_.largestMomentum, "momentum that nothing gave");
+  judge(measures_.spin, measures_.largestSpin, "angular momentum that nothing gave");
   return first;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "constraints/invariants.h"
+#include "core/byte_archive.h"
 #include "simulate/assembly.h"
 
 namespace cradle {
@@ -23,6 +24,11 @@ class Drift {
   /// Time (s) of the first frame beyond `most`.
   std::optional<double> firstBeyond(double most) const;
 
+  template <class Archive>
+  friend void visit(Archive& archive, Visited<Archive, Drift>& drift) {
+    archive(drift.largest_);
+  }
+
  private:
   std::vector<std::pair<double, double>> largest_;  // s, drift: ascending
 };
@@ -34,8 +40,27 @@ class Drift {
 /// their radii of gyration would give. The measures of the momenta are the largest sums of the bodies' magnitudes.
 class ConservationRecord {
  public:
+  /// What it has measured so far.
+  struct Measures {
+    double startTime = 0;  // s
+    Invariants start;
+    Vec3 startSpin = Vec3::Zero();  // kg m^2/s: angular momentum about the centre of mass of all
+    double largestEnergy = 0, largestMomentum = 0, largestSpin = 0;  // J, kg m/s, kg m^2/s
+    struct Dissipation {
+      double taken = 0;  // J: the most in a frame until now
+      Drift given;
+    };
+    Dissipation byImpact, byFriction, byDamping;
+    Drift energy, momentum, spin;
+  };
+
   /// Keeps a reference to `assembly`. `accuracy`: the one asked, m/s of bodies at rest.
   ConservationRecord(const Assembly& assembly, double accuracy);
+
+  /// One that goes on.
+  ConservationRecord(const Assembly& assembly, double accuracy, Measures measures);
+
+  const Measures& measures() const { return measures_; }
 
   /// To be called with states between frames, too: what is moved to and fro may stand still at all frames.
   void measure(const VectorX& state);
@@ -59,15 +84,7 @@ class ConservationRecord {
   const Assembly& assembly_;
   double ratio_;     // of the measures
   bool isIsolated_;  // nothing acts from outside but gravity
-  Invariants start_;
-  Vec3 startSpin_;  // kg m^2/s: angular momentum about the centre of mass of all
-  double largestEnergy_ = 0, largestMomentum_ = 0, largestSpin_ = 0;  // J, kg m/s, kg m^2/s
-  struct Dissipation {
-    double taken = 0;  // J: the most in a frame until now
-    Drift given;
-  };
-  Dissipation byImpact_, byFriction_, byDamping_;
-  Drift energy_, momentum_, spin_;
+  Measures measures_;
 };
 
 /// What such a loss makes of the promise of the scene's `bodies`.

@@ -48,6 +48,9 @@ class Corrections {
   /// Those that were the first of their kind, since the last call.
   std::vector<Correction> takeFirst();
 
+  /// How often each kind happened.
+  const std::array<long, kCorrectionKinds>& counts() const { return counts_; }
+
   /// Adds how often each kind happened, by its name; what did not is left out.
   void addCounts(std::map<std::string, long>& counts) const;
 

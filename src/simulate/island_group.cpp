@@ -65,6 +65,7 @@ IslandGroup::IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly al
       clusters_(scene, plan),
       islandOfCluster_(clusters_.count()),
       twins_(clusters_.count()),
+      lastStepEnd_(scene.duration),
       isToldResting_(scene.bodies.size(), 0) {
   for (const int body : all_.sceneBodies) clusterOfBody_.push_back(clusters_.of(body));
   start_ = {0, all_.state, std::vector<JointState>(all_.joints.size()), {}};
@@ -73,6 +74,67 @@ IslandGroup::IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly al
   regroup(setsOf(std::move(joined)));
   addWindow(0, {});
   tellsContacts_ = false;
+}
+
+IslandGroup::IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly all, WorkerThreads& threads,
+                         const GroupRecord& record, long frame, double time)
+    : scene_(scene),
+      plan_(plan),
+      threads_(threads),
+      all_(std::move(all)),
+      record_(all_, scene.accuracy, record.island.measures),
+      clusters_(scene, plan),
+      islandOfCluster_(clusters_.count()),
+      twins_(record.origins, record.together),
+      stretch_(record.stretch),
+      lastStepEnd_(scene.duration),
+      start_{time, record.island.state, record.island.joints, {}},
+      tellsContacts_(false),
+      settled_(record.island.state.tail<kLedgerSize>()),
+      nextFrame_(frame + 1),
+      isToldResting_(scene.bodies.size(), 0),
+      promiseEnd_(record.promiseEnd) {
+  for (const int body : all_.sceneBodies) clusterOfBody_.push_back(clusters_.of(body));
+  frames_.push_back(start_);
+  for (const PartRecord& part : record.island.parts) {
+    for (const int cluster : part.clusters) islandOfCluster_[static_cast<std::size_t>(cluster)] = islands_.size();
+    const IslandPlan moved = clusters_.partOf(part.clusters);
+    std::vector<int> sceneBodies = moved.bodies;
+    sceneBodies.insert(sceneBodies.end(), moved.driven.begin(), moved.driven.end());
+    std::sort(sceneBodies.begin(), sceneBodies.end());
+    addResting(part, sceneBodies, isToldResting_);
+    islands_.push_back(makeIsland(part));
+  }
+}
+
+double IslandGroup::clock() const {
+  double latest = start_.time;
+  for (const Island& island : islands_) latest = std::max(latest, island.solver->clock());
+  return latest;
+}
+
+void IslandGroup::stopAt(double time) {
+  lastStepEnd_ = time;
+  for (Island& island : islands_) island.solver->stopAt(time);
+}
+
+GroupRecord IslandGroup::record() const {
+  CRADLE_CHECK(frames_.size() == 1 && clock() <= start_.time + sameTime(start_.time));
+  GroupRecord record{{start_.state, start_.joints, {}, record_.measures()}, {}, {}, promiseEnd_, stretch_};
+  for (const Island& island : islands_) {
+    record.island.parts.push_back(island.solver->partRecord());
+    record.island.parts.back().clusters = island.clusters;
+  }
+  for (int cluster = 0; cluster < static_cast<int>(clusters_.count()); ++cluster) {
+    record.origins.push_back(twins_.origins().islandOf(cluster));
+    record.together.push_back(twins_.together().islandOf(cluster));
+  }
+  return record;
+}
+
+long IslandGroup::work() const {
+  return std::accumulate(islands_.begin(), islands_.end(), work_,
+                         [](long sum, const Island& island) { return sum + island.solver->work(); });
 }
 
 const VectorX& IslandGroup::stateAt(double time, const std::function<void(double time)>& reached) {
@@ -128,8 +190,8 @@ double IslandGroup::windowLength() const {
 
 /// Moves all islands on by a time (s), or to the end of the scene.
 void IslandGroup::addWindow(double length, const std::function<void(double time)>& reached) {
-  const double left = scene_.duration - start_.time;
-  const double end = length < left * (1 - kTimeRounding) ? start_.time + length : scene_.duration;
+  const double left = lastStepEnd_ - start_.time;
+  const double end = length < left * (1 - kTimeRounding) ? start_.time + length : lastStepEnd_;
   std::function<void(double)> tell;
   if (reached) tell = [&](double) { reached(start_.time); };
   do {
@@ -268,12 +330,18 @@ void IslandGroup::regroup(const std::vector<std::vector<int>>& sets) {
   for (const Island& old : before) {
     if (!old.solver) continue;
     settled_ += old.startLedger;
-    evaluations_ += old.solver->evaluations();
+    settle(old);
   }
   for (std::size_t i = 0; i < islands_.size(); ++i) {
     for (const int cluster : islands_[i].clusters) islandOfCluster_[static_cast<std::size_t>(cluster)] = i;
     twins_.connect(islands_[i].clusters);
   }
+}
+
+/// Keeps what an island has cost that is no more.
+void IslandGroup::settle(const Island& island) {
+  evaluations_ += island.solver->evaluations();
+  work_ += island.solver->work();
 }
 
 /// The islands that had these clusters before; none at the scene's start.
@@ -317,9 +385,15 @@ IslandHistory IslandGroup::historyOf(const std::vector<int>& clusters, const std
 }
 
 IslandGroup::Island IslandGroup::makeIsland(const std::vector<int>& clusters, const std::vector<Island>& before) {
+  const std::vector<const Island*> former = formerOf(clusters, before);
+  return makeIsland({clusters, startedPushes(clusters, former), historyOf(clusters, former)});
+}
+
+/// An island that begins at the window's start.
+IslandGroup::Island IslandGroup::makeIsland(const PartRecord& part) {
   Island island;
-  island.clusters = clusters;
-  Assembly assembly = assemblePart(scene_, clusters_.partOf(clusters), all_);
+  island.clusters = part.clusters;
+  Assembly assembly = assemblePart(scene_, clusters_.partOf(part.clusters), all_);
   VectorX state = assembly.state;
   for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {
     const int from = indexAmong(all_.sceneBodies, assembly.sceneBodies[i]);
@@ -338,14 +412,15 @@ IslandGroup::Island IslandGroup::makeIsland(const std::vector<int>& clusters, co
     island.joints.push_back(static_cast<std::size_t>(found - all_.joints.begin()));
     joints.push_back(start_.joints[island.joints.back()]);
   }
-  const std::vector<const Island*> former = formerOf(clusters, before);
-  beginAt(start_.time, state, joints, startedPushes(clusters, former), assembly);
+  beginAt(start_.time, state, joints, part.pushes, assembly);
   assembly.isContinued = !frames_.empty();
 
-  island.historyAtStart = historyOf(clusters, former);
+  island.historyAtStart = part.history;
   island.solver = std::make_unique<IslandSolver>(scene_, std::move(assembly), plan_.method, island.historyAtStart);
+  island.solver->stopAt(lastStepEnd_);
   island.solver->stateAt(start_.time);
-  if (!frames_.empty()) takeFirstEvents(island);
+  // Other events at its first instant were told by the islands before.
+  if (!frames_.empty()) island.events = island.solver->takeFirstEvents(isToldResting_);
   return island;
 }
 
@@ -442,7 +517,7 @@ bool IslandGroup::takeBackWhatEndsBeyond(double end) {
     again.stops = true;
     again.solver->stopAt(end);
     settled_ += island.startLedger;
-    evaluations_ += island.solver->evaluations();
+    settle(island);
     island = std::move(again);
     isAny = true;
   }
@@ -475,7 +550,7 @@ void IslandGroup::accept() {
     island.evaluationsOfWindow = island.solver->evaluations() - island.evaluationsBefore;
     island.evaluationsBefore = island.solver->evaluations();
     island.hasMoved = false;
-    if (std::exchange(island.stops, false)) island.solver->stopAt(scene_.duration);
+    if (std::exchange(island.stops, false)) island.solver->stopAt(lastStepEnd_);
     island.historyAtStart = island.solver->history(start_.time);
   }
 }
@@ -526,21 +601,6 @@ void IslandGroup::takeEventsUntil(double time) {
       isResting = event.kind == EventKind::rest;
     }
     events_.push_back(event);
-  }
-}
-
-/// Events at an island's first instant were told by the islands before, except those of bodies that begin or cease to
-/// rest.
-void IslandGroup::takeFirstEvents(Island& island) const {
-  const auto isTold = [&](int body) { return isToldResting_[static_cast<std::size_t>(body)] != 0; };
-  for (const Event& event : island.solver->takeEvents())
-    if ((event.kind == EventKind::rest && !isTold(event.bodyA)) || event.kind == EventKind::contactBegin)
-      island.events.push_back(event);
-  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
-    const std::size_t body = static_cast<std::size_t>(island.bodies[i]);
-    if (const int sceneBody = all_.sceneBodies[body]; isTold(sceneBody) && !island.solver->isResting(i))
-      island.events.push_back({start_.time, EventKind::wake, sceneBody, -1,
-                               centerOfMass(start_.state, static_cast<Eigen::Index>(body)), Vec3::Zero(), 0});
   }
 }
 

@@ -38,6 +38,10 @@ class IslandGroup {
   /// the same for any number of them.
   IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly all, WorkerThreads& threads);
 
+  /// One that goes on from a frame (s).
+  IslandGroup(const Scene& scene, const IslandPlan& plan, Assembly all, WorkerThreads& threads,
+              const GroupRecord& record, long frame, double time);
+
   /// As IslandSolver::stateAt, for the time of a frame, in the order of the frames.
   const VectorX& stateAt(double time, const std::function<void(double time)>& reached = {});
 
@@ -58,6 +62,18 @@ class IslandGroup {
 
   /// As IslandSolver's, up to the end of the last window.
   BumpCounts bumpCounts() const;
+
+  /// s: the latest of its clocks.
+  double clock() const;
+
+  /// As IslandSolver::stopAt; not before clock().
+  void stopAt(double time);
+
+  /// To go on from, at a frame at which all islands end a step.
+  GroupRecord record() const;
+
+  /// As IslandSolver's, of all.
+  long work() const;
 
   /// How many islands there are now.
   std::size_t islandCount() const { return islands_.size(); }
@@ -109,6 +125,8 @@ class IslandGroup {
                                          const std::vector<const Island*>& former) const;
   IslandHistory historyOf(const std::vector<int>& clusters, const std::vector<const Island*>& former) const;
   Island makeIsland(const std::vector<int>& clusters, const std::vector<Island>& before);
+  Island makeIsland(const PartRecord& part);
+  void settle(const Island& island);
   void moveAll(double end, const std::function<void(double time)>& reached);
   std::vector<double> timesUntil(double end) const;
   void move(Island& island, const std::vector<double>& times, const std::function<void(double time)>& reached) const;
@@ -121,7 +139,6 @@ class IslandGroup {
   void noteFault();
   void takeReportsUntil(double time);
   void takeEventsUntil(double time);
-  void takeFirstEvents(Island& island) const;
   std::vector<Snapshot> gather();
 
   const Scene& scene_;
@@ -134,6 +151,7 @@ class IslandGroup {
   std::vector<std::size_t> islandOfCluster_;
   Twins twins_;
   double stretch_ = 1;               // of the last window, over windowLength
+  double lastStepEnd_;               // s: no step goes beyond
   std::vector<Island> islands_;      // in the order of their first clusters
   Snapshot start_;                   // of the window under way
   bool tellsContacts_ = true;        // of frames; of the first one in any case
@@ -146,7 +164,7 @@ class IslandGroup {
   std::vector<std::string> warnings_;
   Corrections corrections_;
   std::optional<PromiseEnd> promiseEnd_;
-  long evaluations_ = 0;                                  // of islands that are no more
+  long evaluations_ = 0, work_ = 0;                       // of islands that are no more
   long evaluationsBefore_ = 0, evaluationsOfWindow_ = 0;  // by the last window's start, and in it
 };
 

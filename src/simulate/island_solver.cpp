@@ -22,6 +22,7 @@ constexpr std::size_t kFewBodies = 4;     // that move: many cost more than such
 // less than the accuracy in nearly all frames (of sliding_blocks, belt, shaken_table; 300 times as much in one); where
 // friction jumps, 100 to 10^7 times as much.
 constexpr double kMaxDefect = 10;
+constexpr long kWorkOfContact = 16;   // of an evaluation, where the contacts of a step are solved: 7 to 30 as measured
 constexpr double kMuchSlower = 0.25;  // sliding that loses less in a step is far from its stop
 
 /// s: of contact that events do not serve. A few bodies move as fast as gravity moves them through their own size: the
@@ -40,8 +41,14 @@ std::string textOf(const PromiseEnd& end, const Scene& scene) {
 }  // namespace
 
 IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method)
-    : IslandSolver(scene, std::move(assembly), method, {}) {
+    : IslandSolver(scene, std::move(assembly), method, IslandHistory{}) {
   record_.emplace(island_.assembly, scene.accuracy);
+}
+
+IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method,
+                           const IslandRecord& record)
+    : IslandSolver(scene, std::move(assembly), method, record.parts.front().history) {
+  record_.emplace(island_.assembly, scene.accuracy, record.measures);
 }
 
 IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method, IslandHistory history)
@@ -54,7 +61,8 @@ IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMe
       hasLeftEvents_(history.hasLeftEvents),
       jointStates_(island_.assembly.joints.size()) {
   island_.bumps.goOnFrom(history.bumps);
-  if (history.isInContactSteps)
+  if (!history.resting.islands.empty()) island_.resting.goOnFrom(history.resting);
+  if (history.isInContactSteps && method.isAdaptive())
     changeToSteps();
   else if (method.isAdaptive())
     moveByEvents(hasLeftEvents_);
@@ -97,6 +105,30 @@ void IslandSolver::report(double time, bool byStep) {
     if (bodies[i].hasConstantSpin) rotate(static_cast<Eigen::Index>(i), time, reported_);
 }
 
+IslandRecord IslandSolver::record() const {
+  CRADLE_CHECK(record_ && island_.time <= reportedTime_ + sameTime(reportedTime_));
+  return {reported_, jointStates_, {partRecord()}, record_->measures()};
+}
+
+PartRecord IslandSolver::partRecord() const {
+  PartRecord part{{}, pushesAt(reportedTime_), history(reportedTime_)};
+  part.history.resting = island_.resting.record();
+  return part;
+}
+
+std::vector<Event> IslandSolver::takeFirstEvents(const std::vector<char>& isToldResting) {
+  const auto isTold = [&](int body) { return isToldResting[static_cast<std::size_t>(body)] != 0; };
+  std::vector<Event> events;
+  for (const Event& event : takeEvents())
+    if ((event.kind == EventKind::rest && !isTold(event.bodyA)) || event.kind == EventKind::contactBegin)
+      events.push_back(event);
+  for (std::size_t i = 0; i < assembly().sceneBodies.size(); ++i)
+    if (const int sceneBody = assembly().sceneBodies[i]; isTold(sceneBody) && !isResting(i))
+      events.push_back({reportedTime_, EventKind::wake, sceneBody, -1,
+                        centerOfMass(reported_, static_cast<Eigen::Index>(i)), Vec3::Zero(), 0});
+  return events;
+}
+
 void IslandSolver::beginSweep(double to) {
   isSwept_ = true;
   swept_.begin(reportedTime_, to, reported_);
@@ -122,6 +154,7 @@ void IslandSolver::advance(double time) {
   // Not before: frames in the step under way ask what has taken it.
   if (method_.isAdaptive()) changeMotion();
   const double before = island_.time;
+  const long evaluationsBefore = island_.equations.evaluations();
   coordinates_.beginStep(island_.state);
   if (events_) {
     advance(time, *events_);
@@ -132,6 +165,8 @@ void IslandSolver::advance(double time) {
   } else {
     advance(time, *steps_);
   }
+  const long done = island_.equations.evaluations() - evaluationsBefore;
+  work_ += done * std::ssize(island_.assembly.sceneBodies) * (steps_ && !steps_->isFree() ? kWorkOfContact : 1);
   const bool hasStepped = island_.step.time + island_.step.timeStep >= island_.time;
   coordinates_.endStep(island_.time - before, hasStepped ? island_.step.state : island_.state);
 }

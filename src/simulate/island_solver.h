@@ -11,19 +11,12 @@
 #include "simulate/joint_coordinates.h"
 #include "simulate/steps/stepped_motion.h"
 #include "simulate/swept_bodies.h"
+#include "simulate/world_record.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {
 
 constexpr double kTrialTime = 0.05;  // s: after that, contacts that were too much for events are tried again
-
-/// What an island takes over from those that its bodies were in. Contact steps are those at their last step's end.
-struct IslandHistory {
-  std::optional<PromiseEnd> promiseEnd;
-  bool hasLeftEvents = false;  // for contact steps, once
-  bool isInContactSteps = false;
-  BumpCounts bumps;
-};
 
 /// An island in motion, with a clock of its own. Time goes on in steps of the method.
 class IslandSolver {
@@ -33,6 +26,9 @@ class IslandSolver {
 
   /// One of several, which are judged together: finish does nothing. Contact steps of before go on.
   IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method, IslandHistory history);
+
+  /// One of the plan that goes on.
+  IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method, const IslandRecord& record);
   IslandSolver(const IslandSolver&) = delete;
   IslandSolver& operator=(const IslandSolver&) = delete;
 
@@ -86,6 +82,9 @@ class IslandSolver {
            evaluationsOfLoads_;
   }
 
+  /// Evaluations times bodies, where contact is solved over steps a multiple of that: about as long as it took.
+  long work() const { return work_; }
+
   /// Events since the last call: up to the end of the step under way.
   std::vector<Event> takeEvents() { return island_.log.take(); }
   std::vector<std::string> takeWarnings() { return island_.log.takeWarnings(); }
@@ -100,13 +99,27 @@ class IslandSolver {
   /// Impacts with bumps of each scene body, up to the last step's end.
   BumpCounts bumpCounts() const { return island_.bumps.countsBy(island_.time); }
 
+  /// To go on from, of one of the plan, in the state of the last call of stateAt, which is that at a step's end.
+  IslandRecord record() const;
+
+  /// Takes the events of its first instant, of one that goes on with bodies that moved before: what was told then is
+  /// left out. `isToldResting`: by scene body.
+  std::vector<Event> takeFirstEvents(const std::vector<char>& isToldResting);
+
   /// What an island goes on with that begins from the last step's end; of its impacts those by `time` (s), which is not
   /// after that.
   IslandHistory history(double time) const {
     const bool leavesEvents = events_ && !events_->fallbackReason().empty();
-    return {promiseEnd_, hasLeftEvents_ || leavesEvents, steps_ != nullptr || leavesEvents,
-            island_.bumps.countsBy(time)};
+    return {promiseEnd_,
+            hasLeftEvents_ || leavesEvents,
+            steps_ != nullptr || leavesEvents,
+            island_.bumps.countsBy(time),
+            {}};
   }
+
+  /// Those bodies that move together in it, in the state of the last call of stateAt, which is that at a step's end; of
+  /// no clusters.
+  PartRecord partRecord() const;
 
  private:
   void advance(double time);
@@ -148,6 +161,7 @@ class IslandSolver {
   ConstraintSolver solver_;
   std::unique_ptr<EquationsOfMotion> frameEquations_;  // none before they are asked for
   long evaluationsOfLoads_ = 0;
+  long work_ = 0;
   std::unique_ptr<EventMotion> events_;   // or ...
   std::unique_ptr<SteppedMotion> steps_;  // ... what moves the island
   ChosenMethod method_;

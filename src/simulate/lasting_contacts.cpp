@@ -49,6 +49,13 @@ void LastingContacts::finish() {
     end(lasting_.begin()->first, std::max(*lastFrame_, lasting_.begin()->second.begin));
 }
 
+std::vector<long> LastingContacts::goingOn() const {
+  std::vector<long> numbers;
+  for (const auto& [bodies, contact] : lasting_) numbers.push_back(contact.id);
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
 std::vector<LastingContact> LastingContacts::takeChanged() {
   std::vector<LastingContact> changed;
   for (const auto& [id, contact] : changed_) changed.push_back(contact);

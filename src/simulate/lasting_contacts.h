@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/byte_archive.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {
@@ -22,8 +23,20 @@ class LastingContacts {
   /// After the last frame: contacts that go on then end there.
   void finish();
 
+  /// How many there have been.
+  long count() const { return count_; }
+
+  /// Those that go on, by number.
+  std::vector<long> goingOn() const;
+
   /// Contacts that have begun or ended since the last call, by number.
   std::vector<LastingContact> takeChanged();
+
+  /// Between frames, when those that have changed were taken.
+  template <class Archive>
+  friend void visit(Archive& archive, Visited<Archive, LastingContacts>& contacts) {
+    archive(contacts.lasting_, contacts.impacts_, contacts.lastFrame_, contacts.count_);
+  }
 
  private:
   using Bodies = std::pair<int, int>;

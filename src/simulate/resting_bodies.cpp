@@ -166,6 +166,20 @@ void RestingBodies::bringToRest(const std::vector<int>& bodies, VectorX& state,
   }
 }
 
+RestingBodies::Record RestingBodies::record() const {
+  Record record{restingIsland_, wakeTimes_, *supports_};
+  for (std::size_t body = 0; body < record.islands.size(); ++body)
+    if (!equations_.isResting(body)) record.islands[body] = -1;
+  return record;
+}
+
+void RestingBodies::goOnFrom(const Record& record) {
+  restingIsland_ = record.islands, wakeTimes_ = record.wakeTimes;
+  supports_ = std::make_shared<std::vector<SupportForce>>(record.supports);
+  for (std::size_t body = 0; body < restingIsland_.size(); ++body)
+    if (restingIsland_[body] >= 0) equations_.setResting(body, true);
+}
+
 bool RestingBodies::allRest() const {
   for (std::size_t body = 0; body < sizes_.size(); ++body)
     if (!equations_.isResting(body)) return false;

@@ -41,6 +41,17 @@ class RestingBodies {
   /// Wakes the island of a body. Returns the bodies that were woken.
   std::vector<int> wake(double time, int body);
 
+  /// Which bodies lie still, and what is known of the others.
+  struct Record {
+    std::vector<int> islands;       // of each body the first one that it rests with; -1: it does not rest
+    std::vector<double> wakeTimes;  // s, of each body
+    std::vector<SupportForce> supports;
+  };
+  Record record() const;
+
+  /// Lets bodies rest as they did; none does now, and they stand still.
+  void goOnFrom(const Record& record);
+
   bool allRest() const;
   bool anyRests() const;
   bool isResting(int body) const { return body != kFixed && equations_.isResting(static_cast<std::size_t>(body)); }

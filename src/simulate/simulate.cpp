@@ -6,6 +6,7 @@
 #include "simulate/lasting_contacts.h"
 #include "simulate/life_sign.h"
 #include "simulate/plan/plan_text.h"
+#include "simulate/run_record.h"
 #include "simulate/step_loss.h"
 #include "simulate/world.h"
 
@@ -43,6 +44,36 @@ void endContacts(LastingContacts& contacts, const SimulationSink& sink) {
   tellOfContacts(contacts, sink);
 }
 
+/// When checkpoints are: at the first frame that no step under way goes beyond, after so much work.
+class CheckpointSchedule {
+ public:
+  /// Keeps a reference to `scene`. `workThen`: by the latest checkpoint.
+  CheckpointSchedule(const Scene& scene, long work, long workThen) : scene_(scene), work_(work), workThen_(workThen) {}
+
+  /// To be asked behind each frame: whether it has a checkpoint. If the next one is due, steps are to end at it.
+  bool isAt(long frame, World& run) {
+    if (next_ > 0) {
+      if (frame < next_) return false;
+      next_ = 0;
+      workThen_ = run.work();
+      return true;
+    }
+    if (!run.hasRecords() || run.work() - workThen_ < work_) return false;
+    long next = frame + 1;
+    while (next < lastFrame(scene_) && frameTime(scene_, next) < run.clock()) ++next;
+    workThen_ = run.work();
+    if (next >= lastFrame(scene_)) return false;
+    next_ = next;
+    run.stopAt(frameTime(scene_, next));
+    return false;
+  }
+
+ private:
+  const Scene& scene_;
+  long work_, workThen_;
+  long next_ = 0;  // frame; 0: none is due
+};
+
 }  // namespace
 
 TrajectoryHeader headerOf(const Scene& scene, const Plan& plan) {
@@ -75,14 +106,28 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink) {
   return simulate(scene, run, sink);
 }
 
-RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
+RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink, const std::string& record,
+                 long checkpointWork) {
   CpuStopwatch integration;
-  StepLoss loss(scene);
-  LastingContacts contacts;
   LifeSign sign(sink.reached);
   std::function<void(double)> note;
   if (sink.reached) note = [&sign](double time) { sign.note(time); };
-  for (const std::string& warning : run.startWarnings()) sink.warning(warning);
+  if (sink.contact) run.tellContacts();
+  RunRecord soFar;
+  const auto goOnFrom = [&](const std::string& bytes) {
+    soFar = runRecordOf(bytes);
+    run.goOnFrom(soFar.world);
+    integration = {};
+  };
+  long first = 0;
+  if (record.empty()) {
+    for (const std::string& warning : run.startWarnings()) sink.warning(warning);
+  } else {
+    goOnFrom(record);
+    first = soFar.world.frame + 1;
+  }
+  LastingContacts& contacts = soFar.contacts;
+  const auto secondsOfAll = [&] { return soFar.cpuSeconds + integration.seconds(); };
 
   const auto frameAt = [&](long number) {
     integration.start();
@@ -93,8 +138,8 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
       throw;
     }
   };
-  if (sink.contact) run.tellContacts();
-  for (long number = 0; number <= lastFrame(scene); ++number) {
+  CheckpointSchedule schedule(scene, checkpointWork, soFar.world.work);
+  for (long number = first; number <= lastFrame(scene); ++number) {
     sign.beginFrame();
     Frame frame = frameAt(number);
     integration.stop();
@@ -107,19 +152,25 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
       if (sink.correction) sink.correction(correction);
       sink.warning(describe(correction, scene));
     }
-    loss.add(frame);
+    soFar.energies = StepLoss(scene, soFar.energies).with(frame);
     if (sink.contact) {
       frame.contacts = run.contactWrenches();
       contacts.note(frame);
       tellOfContacts(contacts, sink);
     }
     sink.frame(frame);
+    if (!schedule.isAt(number, run)) continue;
+    soFar.world = run.record(), soFar.cpuSeconds = secondsOfAll();
+    const std::string bytes = bytesOf(soFar);
+    if (sink.checkpoint) sink.checkpoint({number, contacts.count(), contacts.goingOn(), bytes});
+    goOnFrom(bytes);
   }
   run.finish();
   endContacts(contacts, sink);
   tellOfPromises(run, sink);
-  if (const auto warning = loss.warning(); warning && !run.hasLongSteps()) sink.warning(*warning);
-  return {integration.seconds(), run.evaluations(), run.correctionCounts(),
+  const auto warning = StepLoss(scene, soFar.energies).warning();
+  if (warning && !run.hasLongSteps()) sink.warning(*warning);
+  return {secondsOfAll(), run.evaluations(), run.correctionCounts(),
           describeOutcome(run.plan(), run.promiseEnds(), scene)};
 }
 

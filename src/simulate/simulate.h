@@ -22,6 +22,7 @@ struct SimulationSink {
   /// Each contact that lasts, when it begins, before its first frame, and again when it has ended; may be none: then
   /// frames have no contacts, either.
   std::function<void(const LastingContact&)> contact = {};
+  std::function<void(const Checkpoint&)> checkpoint = {};  // behind its frame; may be none
   std::function<void(double time)> reached = {};  // s, inside a frame that takes seconds, once a second; may be none
 };
 
@@ -33,8 +34,14 @@ TrajectoryHeader headerOf(const Scene& scene, const Plan& plan);
 /// throws.
 RunCost simulate(const Scene& scene, const SimulationSink& sink);
 
-/// The same for a run that has been begun, and is at its start. `scene` has passed refuseUnsupported.
-RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink);
+/// Of World::work between checkpoints: about two seconds. At a checkpoint steps end, and all motion is thrown away and
+/// built again from a plain record, so that a run which goes on from that record has the same bits.
+constexpr long kCheckpointWork = 3'000'000;
+
+/// The same for a run that has been begun, and is at its start, or goes on from the record of a Checkpoint: `sink` is
+/// told what is behind that. `scene` has passed refuseUnsupported.
+RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink, const std::string& record = "",
+                 long checkpointWork = kCheckpointWork);
 
 /// The whole run in memory.
 Trajectory simulate(const Scene& scene);

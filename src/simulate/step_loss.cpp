@@ -39,19 +39,22 @@ double roundedKinetic(const Scene& scene) {
 
 }  // namespace
 
-void StepLoss::add(const Frame& frame) {
-  largestKinetic_ = std::max(largestKinetic_, frame.energy.kinetic);
-  Half& half = 2 * frame.time < scene_.duration ? first_ : second_;
+StepLoss::Energies StepLoss::with(const Frame& frame) const {
+  Energies energies = energies_;
+  energies.largestKinetic = std::max(energies.largestKinetic, frame.energy.kinetic);
+  Half& half = 2 * frame.time < scene_.duration ? energies.first : energies.second;
   half.sum += frame.energy.numerical;
   ++half.frames;
+  return energies;
 }
 
 std::optional<std::string> StepLoss::warning() const {
-  if (!scene_.method || !scene_.method->timeStep || first_.frames == 0 || second_.frames == 0) return std::nullopt;
-  if (!(largestKinetic_ > roundedKinetic(scene_))) return std::nullopt;
+  if (!scene_.method || !scene_.method->timeStep || energies_.first.frames == 0 || energies_.second.frames == 0)
+    return std::nullopt;
+  if (!(energies_.largestKinetic > roundedKinetic(scene_))) return std::nullopt;
   const bool hasSprings = !scene_.springs.empty();
-  const double lost = hasSprings ? second_.mean() - first_.mean() : second_.mean();
-  const double ratio = std::abs(lost) / largestKinetic_;
+  const double lost = hasSprings ? energies_.second.mean() - energies_.first.mean() : energies_.second.mean();
+  const double ratio = std::abs(lost) / energies_.largestKinetic;
   if (!(ratio > (hasSprings ? kToldDifference : kToldRatio))) return std::nullopt;
   const double timeStep = *scene_.method->timeStep;
   return fmt::format(

@@ -14,10 +14,23 @@ namespace cradle {
 /// springs, where that method changes what the energy swings about, how it differs from the first half's.
 class StepLoss {
  public:
-  /// Keeps a reference to `scene`.
-  explicit StepLoss(const Scene& scene) : scene_(scene) {}
+  struct Half {
+    double sum = 0;  // J: of the numerical energies of its frames
+    long frames = 0;
 
-  void add(const Frame& frame);
+    double mean() const { return sum / static_cast<double>(frames); }
+  };
+  /// Of the frames so far.
+  struct Energies {
+    double largestKinetic = 0;  // J
+    Half first, second;
+  };
+
+  /// Keeps a reference to `scene`.
+  StepLoss(const Scene& scene, const Energies& soFar) : scene_(scene), energies_(soFar) {}
+
+  /// And of that one.
+  Energies with(const Frame& frame) const;
 
   /// To be told at the end, if the steps have lost or gained a tenth of the largest kinetic energy by then, or a fifth
   /// of it with springs: how much, and a step with which it is about 1 %.
@@ -25,14 +38,7 @@ class StepLoss {
 
  private:
   const Scene& scene_;
-  double largestKinetic_ = 0;  // J
-  struct Half {
-    double sum = 0;  // J: of the numerical energies of its frames
-    long frames = 0;
-
-    double mean() const { return sum / static_cast<double>(frames); }
-  };
-  Half first_, second_;
+  Energies energies_;
 };
 
 }  // namespace cradle

@@ -7,6 +7,13 @@
 
 namespace cradle {
 
+Twins::Twins(const std::vector<int>& origins, const std::vector<int>& together) : Twins(origins.size()) {
+  for (int cluster = 0; cluster < std::ssize(origins); ++cluster) {
+    origins_.join(origins[static_cast<std::size_t>(cluster)], cluster);
+    together_.join(together[static_cast<std::size_t>(cluster)], cluster);
+  }
+}
+
 void Twins::connect(const std::vector<int>& clusters) {
   for (const int cluster : clusters) origins_.join(clusters.front(), cluster);
 }

@@ -15,6 +15,9 @@ class Twins {
  public:
   explicit Twins(std::size_t clusters) : origins_(clusters), together_(clusters) {}
 
+  /// Such as others have come to: for each cluster one that it is joined with.
+  Twins(const std::vector<int>& origins, const std::vector<int>& together);
+
   /// To be told the clusters of each island.
   void connect(const std::vector<int>& clusters);
 
@@ -31,6 +34,7 @@ class Twins {
 
   /// Clusters that are not to part, joined.
   const DisjointSets& together() const { return together_; }
+  const DisjointSets& origins() const { return origins_; }
 
  private:
   DisjointSets origins_, together_;

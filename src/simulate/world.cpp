@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "constraints/invariants.h"
+#include "core/error.h"
 #include "core/interruption.h"
 #include "simulate/shared_islands.h"
 #include "simulate/start_overlaps.h"
@@ -32,7 +33,8 @@ void add(const Invariants& sums, const VectorX& state, EnergyBalance& balance) {
 
 }  // namespace
 
-World::World(const Scene& scene) : plan_(planOf(scene)), joints_(scene.hinges.size() + scene.sliders.size()) {
+World::World(const Scene& scene)
+    : scene_(scene), plan_(planOf(scene)), joints_(scene.hinges.size() + scene.sliders.size()) {
   for (const Body& body : scene.bodies) {
     if (body.prescribed) cradle::add(static_cast<int>(moving_), *body.prescribed, driven_);
     stateOfBody_.push_back(body.motion == Motion::fixed ? -1 : static_cast<int>(moving_++));
@@ -48,17 +50,17 @@ World::World(const Scene& scene) : plan_(planOf(scene)), joints_(scene.hinges.si
           fmt::format("{}: impacts of {} have no bumps: many bodies may touch, and soft contacts "
                       "decide; ask for an accuracy of {} or finer to have them",
                       scene.path, namesOfBodies(plan_.islands[i].bodies, scene), kVisualAccuracy));
-    move(scene, i, std::move(assemblies[i]));
+    move(i, std::move(assemblies[i]));
   }
-  decideStartPromises(scene);
+  decideStartPromises();
 }
 
-void World::decideStartPromises(const Scene& scene) {
+void World::decideStartPromises() {
   promiseEnds_.resize(plan_.islands.size());
   notePromiseEnds();
   for (std::size_t i = 0; i < promiseEnds_.size(); ++i) {
     if (!promiseEnds_[i]) continue;
-    const std::string names = namesOfBodies(promiseEnds_[i]->bodies, scene);
+    const std::string names = namesOfBodies(promiseEnds_[i]->bodies, scene_);
     plan_.islands[i].promise = {
         Promise::Kind::none, {}, fmt::format("{} ({}) at the start", promiseEnds_[i]->reason, names)};
   }
@@ -87,25 +89,25 @@ std::vector<PromiseEnd> World::takePromiseEnds() {
   return ends;
 }
 
-void World::move(const Scene& scene, std::size_t index, Assembly assembly) {
+void World::move(std::size_t index, Assembly assembly) {
   const IslandPlan& island = plan_.islands[index];
   switch (island.method.kind) {
     case MotionKind::freeFlight:
       return addFlight(std::move(assembly));
     case MotionKind::elasticFlight:
-      spheres_.push_back(std::make_unique<HardSpheres>(scene, std::move(assembly), *hardSpheresOf(scene, island)));
+      spheres_.push_back(std::make_unique<HardSpheres>(scene_, std::move(assembly), *hardSpheresOf(scene_, island)));
       return;
     case MotionKind::pile:
       softIslands_.push_back(std::make_unique<SoftSubsteps>(std::move(assembly), island.method.timeStep));
       return;
     case MotionKind::fixedSteps:
     case MotionKind::errorSteps:
-      if (IslandGroup::mayDivide(scene, island)) {
-        groups_.push_back(std::make_unique<IslandGroup>(scene, island, std::move(assembly), threads_));
+      if (IslandGroup::mayDivide(scene_, island)) {
+        groups_.push_back(std::make_unique<IslandGroup>(scene_, island, std::move(assembly), threads_));
         islandOfGroup_.push_back(index);
         return;
       }
-      solvers_.push_back(std::make_unique<IslandSolver>(scene, std::move(assembly), island.method));
+      solvers_.push_back(std::make_unique<IslandSolver>(scene_, std::move(assembly), island.method));
       islandOfSolver_.push_back(index);
   }
 }
@@ -129,7 +131,7 @@ Frame World::frameAt(long number, double time, const std::function<void(double t
     for (std::size_t i = 0; i < simulation.jointStates().size(); ++i)
       frame.joints[simulation.assembly().joints[i].index] = simulation.jointStates()[i];
   });
-  lastTime_ = time;
+  lastTime_ = time, lastFrame_ = number;
   notePromiseEnds();
   for (const auto& spheres : spheres_) takeFrom(*spheres, spheres->stateAt(time), frame);
   for (const auto& pile : softIslands_) takeFrom(*pile, pile->stateAt(time), frame);
@@ -187,6 +189,7 @@ void World::takeFrom(Simulation& simulation, const VectorX& state, Frame& frame)
 }
 
 void World::tellContacts() {
+  tellsContacts_ = true;
   for (const auto& group : groups_) group->tellContacts();
 }
 
@@ -250,6 +253,9 @@ std::vector<Correction> World::takeCorrections() {
 
 std::map<std::string, long> World::correctionCounts() const {
   std::map<std::string, long> counts;
+  for (std::size_t kind = 0; kind < kCorrectionKinds; ++kind)
+    if (before_.corrections[kind] > 0)
+      counts[correctionName(static_cast<CorrectionKind>(kind))] = before_.corrections[kind];
   forEachSolver([&](auto& solver, std::size_t) { solver.corrections().addCounts(counts); });
   return counts;
 }
@@ -260,8 +266,69 @@ BumpCounts World::bumpCounts() const {
   return all;
 }
 
+double World::clock() const {
+  double latest = lastTime_;
+  forEachSolver([&](const auto& solver, std::size_t) { latest = std::max(latest, solver.clock()); });
+  return latest;
+}
+
+void World::stopAt(double time) {
+  forEachSolver([time](auto& solver, std::size_t) { solver.stopAt(time); });
+}
+
+WorldRecord World::record() const {
+  CRADLE_CHECK(hasRecords() && events_.empty() && warnings_.empty() && newEnds_.empty());
+  WorldRecord record;
+  record.time = lastTime_, record.frame = lastFrame_;
+  for (const auto& solver : solvers_) record.islands.push_back(solver->record());
+  for (const auto& group : groups_) record.groups.push_back(group->record());
+  record.promiseEnds = promiseEnds_, record.isToldOf = isToldOf_;
+  record.corrections = before_.corrections;
+  forEachSolver([&](auto& solver, std::size_t) {
+    for (std::size_t kind = 0; kind < kCorrectionKinds; ++kind)
+      record.corrections[kind] += solver.corrections().counts()[kind];
+  });
+  record.evaluations = evaluations(), record.work = work();
+  return record;
+}
+
+void World::goOnFrom(const WorldRecord& record) {
+  CRADLE_CHECK(hasRecords());
+  before_ = record;
+  lastTime_ = record.time, lastFrame_ = record.frame;
+  promiseEnds_ = record.promiseEnds, isToldOf_ = record.isToldOf;
+  events_.clear(), warnings_.clear(), newEnds_.clear();
+  for (FlyingIsland& island : flying_) island.evaluations = 0;
+  for (std::size_t i = 0; i < solvers_.size(); ++i) {
+    const IslandPlan& island = plan_.islands[islandOfSolver_[i]];
+    const IslandRecord& from = record.islands.at(i);
+    Assembly assembly = assemble(scene_, island);
+    beginAt(record.time, from.state, from.joints, from.parts.front().pushes, assembly);
+    assembly.isContinued = true;
+    solvers_[i] = std::make_unique<IslandSolver>(scene_, std::move(assembly), island.method, from);
+    solvers_[i]->stateAt(record.time);
+    std::vector<char> isToldResting(scene_.bodies.size(), 0);
+    addResting(from.parts.front(), solvers_[i]->assembly().sceneBodies, isToldResting);
+    const std::vector<Event> first = solvers_[i]->takeFirstEvents(isToldResting);
+    events_.insert(events_.end(), first.begin(), first.end());
+  }
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    const IslandPlan& island = plan_.islands[islandOfGroup_[i]];
+    groups_[i] = std::make_unique<IslandGroup>(scene_, island, assemble(scene_, island), threads_, record.groups.at(i),
+                                               record.frame, record.time);
+    if (tellsContacts_) groups_[i]->tellContacts();
+  }
+}
+
+long World::work() const {
+  long sum = before_.work;
+  for (const auto& solver : solvers_) sum += solver->work();
+  for (const auto& group : groups_) sum += group->work();
+  return sum;
+}
+
 long World::evaluations() const {
-  long sum = 0;
+  long sum = before_.evaluations;
   forEachSolver([&](const auto& solver, std::size_t) { sum += solver.evaluations(); });
   for (const auto& spheres : spheres_) sum += spheres->evaluations();
   for (const auto& pile : softIslands_) sum += pile->evaluations();

@@ -12,6 +12,7 @@
 #include "simulate/island_group.h"
 #include "simulate/soft_substeps.h"
 #include "simulate/spheres/hard_spheres.h"
+#include "simulate/world_record.h"
 
 namespace cradle {
 
@@ -61,6 +62,24 @@ class World {
   /// How often each kind of correction has happened so far.
   std::map<std::string, long> correctionCounts() const;
 
+  /// Whether there are records to go on from: of heaps with soft contacts, and of balls in closed form, there are none.
+  bool hasRecords() const { return softIslands_.empty() && spheres_.empty(); }
+
+  /// s: the latest clock of an island.
+  double clock() const;
+
+  /// No step goes beyond `time` (s), not before clock().
+  void stopAt(double time);
+
+  /// To go on from, at a frame at which all steps end; all that there is to be taken was.
+  WorldRecord record() const;
+
+  /// Throws all motion away and builds it again from a record.
+  void goOnFrom(const WorldRecord& record);
+
+  /// As IslandSolver's, of all, so far: a measure of time that is the same in each run.
+  long work() const;
+
   /// Impacts with bumps of each scene body so far; none for those that have had none.
   BumpCounts bumpCounts() const;
 
@@ -74,8 +93,8 @@ class World {
     std::vector<FreeFlight> flights;
     long evaluations = 0;
   };
-  void move(const Scene& scene, std::size_t island, Assembly assembly);
-  void decideStartPromises(const Scene& scene);
+  void move(std::size_t island, Assembly assembly);
+  void decideStartPromises();
   void notePromiseEnds();
   void addFlight(Assembly assembly);
   std::vector<const VectorX*> moveTo(double time, const std::function<void(double time)>& reached);
@@ -83,6 +102,7 @@ class World {
   void takeFrom(Simulation& simulation, const VectorX& state, Frame& frame);
   void addTo(Frame& frame, const Assembly& assembly, const VectorX& state) const;
 
+  const Scene& scene_;
   Plan plan_;
   std::vector<std::string> startWarnings_;
   bool hasLongSteps_ = false;
@@ -106,6 +126,9 @@ class World {
   std::array<char, kCorrectionKinds> isToldOf_ = {};  // kinds of corrections
   std::vector<Event> events_;                         // known, but not yet taken
   double lastTime_ = 0;                               // s, of the latest frame
+  long lastFrame_ = 0;
+  bool tellsContacts_ = false;
+  WorldRecord before_;  // what was counted by then; empty if it began at the start
 };
 
 }  // namespace cradle

@@ -278,6 +278,7 @@ Database::Database(const std::string& path, DatabaseAccess access) : path_(path)
   }
   if (access == DatabaseAccess::extend) {
     open(plainName(path), SQLITE_OPEN_READWRITE);
+    execute("PRAGMA cache_spill = OFF; PRAGMA synchronous = NORMAL");
     return;
   }
   if (access == DatabaseAccess::unnamed) {

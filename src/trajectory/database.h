@@ -58,7 +58,7 @@ class Statement {
 /// is then a file named on the command line that is wrong.
 enum class DatabaseAccess { create, extend, read, unnamed };
 
-/// One SQLite file. Statements must not outlive it. extend: a file that this program has just written.
+/// One SQLite file. Statements must not outlive it. extend: a file that this program has written.
 class Database {
  public:
   /// create: a new file at `path`, where nothing may be. read: an existing file, which may come from anywhere: what is

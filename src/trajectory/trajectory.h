@@ -93,6 +93,15 @@ struct Frame {
 };
 
 /// contactBegin and contactEnd are those of a LastingContact: no trajectory has them as events of their own.
+/// What a run can go on from that was ended.
+struct Checkpoint {
+  long frame = 0;                // the last one by then
+  long contactCount = 0;         // of lasting contacts by then
+  std::vector<long> goingOn;     // those of them that have not ended, by number
+  std::string record;            // bytes that the build that wrote them can read
+  std::string fingerprint = {};  // of that build, and of all that the motion depends on
+};
+
 enum class EventKind {
   impact,
   taut,

@@ -28,6 +28,9 @@ class TrajectoryWriter {
   /// file, or is being written by another run.
   TrajectoryWriter(const std::string& path, const TrajectoryHeader& header,
                    std::chrono::milliseconds commitInterval = kCommitInterval);
+  /// Goes on with the FILE.part of an ended run, behind its checkpoint: what it has after that is dropped, and all
+  /// cameras, which are to be told again. Throws as above, and if there is none.
+  TrajectoryWriter(const std::string& path, const TrajectoryHeader& header, const Checkpoint& checkpoint);
   /// Into a file without a name, below TMPDIR, for a TrajectoryReader. Throws Error(output).
   explicit TrajectoryWriter(const TrajectoryHeader& header);
   ~TrajectoryWriter();
@@ -45,6 +48,9 @@ class TrajectoryWriter {
   /// The camera of a frame, each once.
   void append(const CameraPose& camera);
 
+  /// Of the frame that was appended last; replaces the one before.
+  void append(const Checkpoint& checkpoint);
+
   bool hasFrame() const { return framesAppended_ > 0; }
 
   /// Completes the file and gives it its name, if it is to have one. There must be a frame. Throws Error(output).
@@ -58,6 +64,10 @@ class TrajectoryWriter {
   friend class TrajectoryReader;
   struct Session;
   void begin(std::unique_ptr<Database> database, const TrajectoryHeader& header);
+  void nameColumns(const TrajectoryHeader& header);
+  void beginTransaction();
+  void dropBehind(const Checkpoint& checkpoint);
+  void readUntil(const Checkpoint& checkpoint);
   std::unique_ptr<Database> release();
   void requireFinite(const Frame& frame) const;
   void writeFrame(const Frame& frame);
@@ -108,6 +118,9 @@ class TrajectoryReader {
 
   /// What lasting contacts do at a frame, by their numbers. Amortised O(contacts) if frames are read in their order.
   std::vector<ContactWrench> contactsAt(long number) const;
+
+  /// What an unfinished run goes on from, if it has come to that.
+  std::optional<Checkpoint> checkpoint() const;
 
   /// By frame, of those whose camera was known. Empty in trajectories of earlier versions.
   std::vector<CameraPose> cameras() const;

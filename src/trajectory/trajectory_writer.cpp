@@ -209,29 +209,35 @@ bool allPossible(const std::array<double, N>& numbers) {
 }
 
 /// Begins the transaction that holds the empty tables.
-Database& createTables(Database& database) {
+void createTables(Database& database) {
   database.execute("BEGIN IMMEDIATE");
   database.execute(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kSchemaVersion));
   database.execute(kTables);
-  return database;
+}
+
+std::string listOf(const std::vector<long>& numbers) {
+  return fmt::format("{}", fmt::join(numbers, ","));
 }
 
 }  // namespace
 
 struct TrajectoryWriter::Session {
+  /// Of a database that has the tables.
   explicit Session(std::unique_ptr<Database> empty)
       : database(std::move(empty)),
-        frame(createTables(*database).prepare("INSERT INTO frame VALUES (?, ?)")),
+        frame(database->prepare("INSERT INTO frame VALUES (?, ?)")),
         state(database->prepare("INSERT INTO state VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         energy(database->prepare("INSERT INTO energy VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         joint(database->prepare("INSERT INTO joint_state VALUES (?, ?, ?, ?, ?)")),
         contact(database->prepare("INSERT OR REPLACE INTO contact VALUES (?, ?, ?, ?, ?)")),
         force(database->prepare("INSERT INTO contact_force VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         camera(database->prepare("INSERT INTO camera VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")),
-        event(database->prepare("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}
+        event(database->prepare("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
+        checkpoint(database->prepare(
+            "INSERT INTO checkpoint VALUES (?, (SELECT coalesce(max(rowid), 0) FROM event), ?, ?, ?, ?)")) {}
 
   std::unique_ptr<Database> database;
-  Statement frame, state, energy, joint, contact, force, camera, event;
+  Statement frame, state, energy, joint, contact, force, camera, event, checkpoint;
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::string& path, const TrajectoryHeader& header,
@@ -251,15 +257,78 @@ TrajectoryWriter::TrajectoryWriter(const TrajectoryHeader& header) : commitInter
   begin(std::make_unique<Database>("", DatabaseAccess::unnamed), header);
 }
 
-void TrajectoryWriter::begin(std::unique_ptr<Database> database, const TrajectoryHeader& header) {
+TrajectoryWriter::TrajectoryWriter(const std::string& path, const TrajectoryHeader& header,
+                                   const Checkpoint& checkpoint)
+    : path_(path), part_(partPath(path)), commitInterval_(kCommitInterval) {
+  requireWritableFile(path_);
+  nameColumns(header);
+  session_ = std::make_unique<Session>(std::make_unique<Database>(part_, DatabaseAccess::extend));
+  beginTransaction();
+  dropBehind(checkpoint);
+  readUntil(checkpoint);
+  framesAppended_ = framesCommitted_ = checkpoint.frame + 1;
+}
+
+/// What the run has told after its checkpoint.
+void TrajectoryWriter::dropBehind(const Checkpoint& checkpoint) {
+  Database& database = *session_->database;
+  database.execute(fmt::format("DELETE FROM event WHERE rowid > (SELECT events FROM checkpoint WHERE frame = {})",
+                               checkpoint.frame));
+  database.execute(fmt::format("DELETE FROM frame WHERE id > {}", checkpoint.frame));
+  database.execute("DELETE FROM camera");
+  for (const char* table : {"state", "energy", "joint_state", "contact_force"})
+    database.execute(fmt::format("DELETE FROM {} WHERE frame > {}", table, checkpoint.frame));
+  database.execute(fmt::format("DELETE FROM contact WHERE id >= {}", checkpoint.contactCount));
+  database.execute(fmt::format("UPDATE contact SET end = NULL WHERE id IN ({})", listOf(checkpoint.goingOn)));
+}
+
+/// What the rows until then have left of hashes and last forces.
+void TrajectoryWriter::readUntil(const Checkpoint& checkpoint) {
+  Database& database = *session_->database;
+  Statement times = database.prepare("SELECT id, time FROM frame ORDER BY id");
+  Statement states = database.prepare(
+      "SELECT px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz FROM state WHERE frame = ? ORDER BY body");
+  while (times.step()) {
+    Frame frame{times.integer(0), times.real(1), {}, {}};
+    states.bind(1, frame.number);
+    while (states.step()) {
+      const auto number = [&](int column) { return states.real(column); };
+      frame.states.push_back({Vec3(number(0), number(1), number(2)), Quat(number(3), number(4), number(5), number(6)),
+                              Vec3(number(7), number(8), number(9)), Vec3(number(10), number(11), number(12))});
+    }
+    states.reset();
+    addFrame(frame, stateHash_);
+    lastTime_ = frame.time;
+  }
+  Statement forces =
+      database.prepare(fmt::format("SELECT contact, fx, fy, fz, tx, ty, tz, x, y, z, nx, ny, nz, normal, friction FROM "
+                                   "contact_force WHERE contact IN "
+                                   "({}) ORDER BY frame",
+                                   listOf(checkpoint.goingOn)));
+  while (forces.step()) {
+    ForceNumbers& numbers = lastForces_[forces.integer(0)];
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = forces.real(static_cast<int>(i) + 1);
+  }
+}
+
+void TrajectoryWriter::nameColumns(const TrajectoryHeader& header) {
   for (std::size_t id = 0; id < header.bodies.size(); ++id) {
     bodyNames_.push_back(header.bodies[id].name);
     if (header.bodies[id].hasStates()) movingBodies_.push_back(static_cast<int>(id));
   }
   for (const JointRecord& joint : header.joints) jointNames_.push_back(joint.name);
+}
+
+void TrajectoryWriter::begin(std::unique_ptr<Database> database, const TrajectoryHeader& header) {
+  nameColumns(header);
+  createTables(*database);
   session_ = std::make_unique<Session>(std::move(database));
   insertHeader(*session_->database, header);
   session_->database->commit();
+  beginTransaction();
+}
+
+void TrajectoryWriter::beginTransaction() {
   session_->database->execute("BEGIN IMMEDIATE");
   lastCommit_ = std::chrono::steady_clock::now();
 }
@@ -361,6 +430,18 @@ void TrajectoryWriter::append(const CameraPose& camera) {
   session_->camera.run();
 }
 
+void TrajectoryWriter::append(const Checkpoint& checkpoint) {
+  CRADLE_CHECK(session_ && transactionWhole_ && checkpoint.frame == framesAppended_ - 1);
+  session_->database->execute("DELETE FROM checkpoint");
+  Statement& insert = session_->checkpoint;
+  insert.bind(1, checkpoint.frame);
+  insert.bind(2, checkpoint.contactCount);
+  insert.bind(3, "[" + listOf(checkpoint.goingOn) + "]");
+  insert.bind(4, std::as_bytes(std::span(checkpoint.record)));
+  insert.bind(5, checkpoint.fingerprint);
+  insert.run();
+}
+
 void TrajectoryWriter::append(const Event& event) {
   const auto isBody = [&](int body) { return body >= 0 && static_cast<std::size_t>(body) < bodyNames_.size(); };
   CRADLE_CHECK(session_ && transactionWhole_);
@@ -383,12 +464,12 @@ void TrajectoryWriter::commitIfDue() {
   const auto now = std::chrono::steady_clock::now();
   if (now - lastCommit_ < commitInterval_ || !session_->database->tryCommit()) return;
   framesCommitted_ = framesAppended_;
-  lastCommit_ = now;
-  session_->database->execute("BEGIN IMMEDIATE");
+  beginTransaction();
 }
 
 void TrajectoryWriter::finish(const RunCost& cost) {
   CRADLE_CHECK(session_ && transactionWhole_ && framesAppended_ > 0);
+  session_->database->execute("DELETE FROM checkpoint");
   insertMeta(*session_->database, "cpuSeconds", cost.cpuSeconds);
   insertMeta(*session_->database, "evaluations", cost.evaluations);
   insertMeta(*session_->database, "corrections", countsAsJson(cost.corrections));

@@ -18,6 +18,7 @@ from running import PATIENCE, everything, read, write
 PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
 MOMENTS = 4         # a signal
+KILLS = 20          # of one run that goes on after each
 MOST_SECONDS = 5    # s from a signal to the end of the run
 MOST_FAULTS = 12    # that a test shows
 COST = "cpu_seconds_per_simulated_second"
@@ -26,7 +27,9 @@ COMMANDS = {"simulate": ["simulate", "in/long.json", "-o", "out/a.sqlite"],
             "render": ["render", "in/film.json", "-o", "out", "--overwrite"],
             "video": ["video", "in/film.json", "-o", "out/a.mp4"],
             "export": ["export", "in/crowd.sqlite", "-o", "out/a.csv"],
-            "study": ["study", "in/short.json", "-o", "out", "--methods", "rk4"]}
+            "study": ["study", "in/short.json", "-o", "out", "--methods", "rk4"],
+            "sample": ["sample", "in/drawn.json", "-n", "12", "--simulate", "--chains", "3", "-o", "out"],
+            "render again": ["render", "in/film.json", "-o", "out", "--skip-existing"]}
 # Begins at once, and ends when a file is there, or after some 20 s.
 SLOW_ENCODER = """#!/bin/sh
 (cat; for k in $(seq 400); do [ -e '%s' ] && break; sleep 0.05; done) | %s "$@"
@@ -115,10 +118,19 @@ class KilledRuns(unittest.TestCase):
         cls.given = tempfile.mkdtemp()
         cls.addClassCleanup(shutil.rmtree, cls.given)
         path = lambda name: os.path.join(cls.given, name)
-        write(path("long.json"), scene(8, method={"name": "rk4", "timeStep": 1e-5}))
+        # Long enough for some checkpoints: five balls below each other.
+        spheres = [{"name": "ball%d" % k, "shape": {"sphere": {"radius": 0.1}}, "position": [0, -k, 0.01 * k]} for k in range(5)]
+        springs = [{"bodyA": "ball%d" % k, **({"bodyB": "ball%d" % (k - 1)} if k else {"anchorB": [0, 1, 0]}), "stiffness": 5000}
+                   for k in range(5)]
+        write(path("long.json"), scene(8, bodies=spheres, springs=springs, method={"name": "rk4", "timeStep": 8e-6}))
         write(path("film.json"), scene(0.5, method={"name": "rk4", "timeStep": 1e-5}))
         sphere = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}
         write(path("short.json"), scene(0.5, bodies=[sphere]))
+        drawn = {**sphere, "position": [{"draw": {"uniform": [-1, 1]}}, 1, 0]}
+        floor = {"name": "floor", "shape": {"plane": {}}, "motion": "static"}
+        wish = {"body": "ball", "inside": {"min": [0, -9, -9], "max": [9, 9, 9]}, "deviation": 0.2}
+        write(path("drawn.json"), scene(0.2, bodies=[floor, drawn], springs=[], wishes=[wish], bumps={"deviationDegrees": 3},
+                                        method={"name": "rk4", "timeStep": 1e-5}))
         crowd = {**sphere, "copies": {"count": [10, 10, 5], "spacing": [1, 1, 1]}}
         for name, document in (("crowd", scene(2, bodies=[crowd], springs=[], output={"framesPerSecond": 120})),
                                ("earlier", scene(0.1))):
@@ -211,6 +223,98 @@ class KilledRuns(unittest.TestCase):
         self.require(run.names == self.whole.keys(), "there is %s" % sorted(run.names))
         for name in run.names & self.whole.keys():
             self.require_whole(run, name)
+
+    def killed_behind_a_checkpoint(self, folder):
+        """Leaves the unfinished trajectory of a run that was killed when it had come to its first checkpoint."""
+        part = os.path.join(folder, "out", "a.sqlite.part")
+        process = subprocess.Popen([PROGRAM, "-q", *COMMANDS["simulate"]], cwd=folder)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+
+        def has_checkpoint():
+            if not os.path.exists(part):
+                return False
+            database = sqlite3.connect("file:%s?mode=ro" % part, uri=True)
+            try:
+                return database.execute("select count(*) from checkpoint").fetchone() == (1,)
+            except sqlite3.DatabaseError:
+                return False
+            finally:
+                database.close()
+        self.wait_until(has_checkpoint)
+        process.kill()
+        self.assertEqual(process.wait(), -signal.SIGKILL)
+        return part
+
+    def rows_of_next_run(self, folder, *options):
+        """What the next run says, and its rows."""
+        run = subprocess.run([PROGRAM, *COMMANDS["simulate"], *options], cwd=folder, capture_output=True, text=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        notes = [line for line in run.stderr.splitlines() if line.startswith("note: ")]
+        return notes, trajectory_rows(os.path.join(folder, "out", "a.sqlite"))
+
+    def test_simulate_goes_on_from_its_checkpoint(self):
+        folder = self.folder("simulate")
+        whole = Run("simulate", folder)
+        rows = trajectory_rows(os.path.join(folder, "out", "a.sqlite"))
+        self.assertEqual((whole.code, len(rows[0])), (0, 481))
+        folder = self.folder("simulate")
+        part = self.killed_behind_a_checkpoint(folder)
+        kept = os.path.join(folder, "kept")
+        shutil.copy(part, kept)
+        notes, found = self.rows_of_next_run(folder)
+        self.assertEqual(len(notes), 1)
+        self.assertRegex(notes[0], r"^note: going on after frame \d+ of out/a.sqlite.part; --fresh begins anew$")
+        self.assertEqual(found, rows)
+        database = sqlite3.connect(os.path.join(folder, "out", "a.sqlite"))
+        self.assertEqual(database.execute("select count(*) from checkpoint").fetchone(), (0,))
+        database.close()
+        for options, damage in ((["--fresh"], ""), ([], "update checkpoint set record = zeroblob(length(record))"),
+                                ([], "update checkpoint set fingerprint = '0'"), ([], "update checkpoint set frame = 9999"),
+                                ([], "delete from state where frame = 3"), ([], "delete from checkpoint")):
+            os.remove(os.path.join(folder, "out", "a.sqlite"))
+            shutil.copy(kept, part)
+            database = sqlite3.connect(part)
+            database.executescript(damage)
+            database.close()
+            self.assertEqual(self.rows_of_next_run(folder, *options), ([], rows), (options, damage))
+
+    def test_a_run_of_another_scene_does_not_go_on(self):
+        folder = self.folder("simulate")
+        part = self.killed_behind_a_checkpoint(folder)
+        notes, rows = self.rows_of_next_run(folder, "--duration", "1")
+        self.assertEqual((notes, len(rows[0])), ([], 61))
+        self.assertFalse(os.path.exists(part))
+
+    def check_many_kills(self, command):
+        """One run that is killed again and again, and goes on, ends as if nothing had been."""
+        folder = self.folder(command)
+        seconds = Run(command, folder).seconds
+        whole = everything(os.path.join(folder, "out"))
+        rows = {name: result(os.path.join(folder, "out", name)) for name in whole if name.endswith(".sqlite")}
+        chance = random.Random("%d many kills of %s" % (SEED, command))
+        folder = self.folder(command)
+        codes = [Run(command, folder, signal.SIGKILL, 0.5 * seconds * chance.random()).code for _ in range(KILLS)]
+        self.assertGreater(codes.count(-signal.SIGKILL), 1)
+        last = Run(command, folder)
+        self.assertEqual((last.code, last.error), (0, ""))
+        found = everything(os.path.join(folder, "out"))
+        self.assertEqual(found.keys(), whole.keys())
+        for name, content in whole.items():
+            is_same = result(os.path.join(folder, "out", name)) == rows[name] if name in rows else found[name] == content
+            self.assertTrue(is_same, name)
+
+    def test_simulate_many_times(self):
+        self.check_many_kills("simulate")
+
+    def test_sample_many_times(self):
+        self.check_many_kills("sample")
+
+    def test_render_many_times(self):
+        self.check_many_kills("render again")
+
+    def test_video_many_times(self):
+        self.check_many_kills("video")
 
     def test_simulate(self):
         self.check("simulate")

@@ -1,0 +1,263 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiments/experiment.h"
+#include "scene/load_scene.h"
+#include "simulate/assembly.h"
+#include "simulate/run_record.h"
+#include "simulate/simulate.h"
+#include "simulate/world.h"
+#include "trajectory/state_hash.h"
+
+namespace cradle {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a run tells, from a record on or from the start.
+struct Told {
+  std::vector<Frame> frames;
+  std::vector<Event> events;
+  std::vector<LastingContact> contacts;
+  std::vector<std::string> warnings;
+  std::vector<Checkpoint> checkpoints;
+  std::vector<std::size_t> eventsBy;  // of each checkpoint
+  RunCost cost;
+};
+
+Told tell(const Scene& scene, long checkpointWork, const std::string& record = "") {
+  Told told;
+  World run(scene);
+  SimulationSink sink{[&](const Frame& frame) { told.frames.push_back(frame); },
+                      [&](const Event& event) { told.events.push_back(event); },
+                      [&](const std::string& warning) { told.warnings.push_back(warning); }};
+  sink.contact = [&](const LastingContact& contact) { told.contacts.push_back(contact); };
+  sink.checkpoint = [&](const Checkpoint& checkpoint) {
+    told.checkpoints.push_back(checkpoint);
+    told.eventsBy.push_back(told.events.size());
+  };
+  told.cost = simulate(scene, run, sink, record, checkpointWork);
+  return told;
+}
+
+std::string hashOf(const std::vector<Frame>& frames, long from) {
+  Hash hash;
+  for (const Frame& frame : frames)
+    if (frame.number > from) addFrame(frame, hash);
+  return hash.hex();
+}
+
+bool areSame(const Event& a, const Event& b) {
+  return a.time == b.time && a.kind == b.kind && a.bodyA == b.bodyA && a.bodyB == b.bodyB && a.point == b.point &&
+         a.impulse == b.impulse;
+}
+
+bool areSame(const ContactWrench& a, const ContactWrench& b) {
+  return a.contact == b.contact && a.bodyA == b.bodyA && a.bodyB == b.bodyB && a.force == b.force &&
+         a.torque == b.torque && a.point == b.point;
+}
+
+/// All that a run tells behind a checkpoint is what one tells that goes on from there.
+void expectSameBehind(const Told& whole, std::size_t index, const Told& rest) {
+  const Checkpoint& checkpoint = whole.checkpoints[index];
+  EXPECT_EQ(hashOf(rest.frames, checkpoint.frame), hashOf(whole.frames, checkpoint.frame));
+  ASSERT_EQ(rest.events.size(), whole.events.size() - whole.eventsBy[index]);
+  for (std::size_t i = 0; i < rest.events.size(); ++i)
+    EXPECT_TRUE(areSame(rest.events[i], whole.events[whole.eventsBy[index] + i])) << "event " << i;
+  for (const Frame& frame : rest.frames) {
+    const Frame& other = whole.frames[static_cast<std::size_t>(frame.number)];
+    EXPECT_EQ(frame.energy.numerical, other.energy.numerical);
+    EXPECT_EQ(frame.energy.dissipated, other.energy.dissipated);
+    ASSERT_TRUE(std::equal(frame.contacts.begin(), frame.contacts.end(), other.contacts.begin(), other.contacts.end(),
+                           [](const ContactWrench& a, const ContactWrench& b) { return areSame(a, b); }))
+        << "frame " << frame.number;
+    for (std::size_t i = 0; i < frame.joints.size(); ++i)
+      EXPECT_EQ(frame.joints[i].coordinate, other.joints[i].coordinate);
+  }
+  EXPECT_EQ(rest.cost.evaluations, whole.cost.evaluations);
+  EXPECT_EQ(rest.cost.corrections, whole.cost.corrections);
+  EXPECT_EQ(rest.cost.promise, whole.cost.promise);
+}
+
+std::vector<std::string> sceneNames() {
+  std::vector<std::string> names;
+  for (const auto& file : fs::directory_iterator(fs::path(CRADLE_SOURCE_DIR) / "scenes"))
+    if (file.path().extension() == ".json") names.push_back(file.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class CheckpointsOf : public testing::TestWithParam<std::string> {};
+
+/// s: of those that cost much, the beginning.
+double durationOf(const std::string& name, double duration) {
+  const bool isSlow = name == "arch" || name == "dominoes" || name == "platform_drop" || name == "gears_on_platform" ||
+                      name == "rope_bridge" || name == "chains_that_throw" || name == "gears_fall";
+  const bool hasHeap = name.ends_with("_tray") || name == "avalanche";
+  return std::min(duration, hasHeap ? 0.1 : isSlow ? 0.4 : 1.2);
+}
+
+// A run that is thrown away at each of its checkpoints, and one that goes on from a record alone, have the same bits.
+TEST_P(CheckpointsOf, AScene) {
+  Scene scene = loadScene((fs::path(CRADLE_SOURCE_DIR) / "scenes" / (GetParam() + ".json")).string()).scene;
+  scene.duration = durationOf(GetParam(), scene.duration);
+  refuseUnsupported(scene);
+  World plain(scene);
+  simulate(scene, plain, {[](const Frame&) {}, [](const Event&) {}, [](const std::string&) {}});
+  const Told whole = tell(scene, std::max(1L, plain.work() / 5));
+  for (std::size_t i = 0; i < whole.checkpoints.size(); ++i)
+    expectSameBehind(whole, i, tell(scene, std::max(1L, plain.work() / 5), whole.checkpoints[i].record));
+}
+
+/// A member of a record, how it is lost, and a scene that shows it.
+struct Loss {
+  std::string name, scene;
+  std::function<void(RunRecord&)> lose;
+};
+
+template <class Lose>
+auto ofIslands(const Lose& lose) {
+  return [lose](RunRecord& run) {
+    for (IslandRecord& island : run.world.islands) lose(island);
+    for (GroupRecord& group : run.world.groups) lose(group.island);
+  };
+}
+
+template <class Lose>
+auto ofParts(const Lose& lose) {
+  return ofIslands([lose](IslandRecord& island) {
+    for (PartRecord& part : island.parts) lose(part);
+  });
+}
+
+std::vector<Loss> losses() {
+  const std::string ball = R"({"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 1, 0])";
+  const std::string floor = R"({"name": "floor", "shape": {"plane": {}}, "motion": "static"})";
+  const std::string springy = R"("duration": 2, "bodies": [)" + ball +
+                              R"(}], "springs": [{"bodyA": "ball", "anchorB": [1, 1, 0], "stiffness": 90}])";
+  const std::string bouncing =
+      R"("duration": 3, "materials": {"rubber": {"restitution": 0.9}}, "bodies": [{"name": "floor", "shape": {"plane": {}},
+      "motion": "static", "material": "rubber"}, )" +
+      ball + R"(, "material": "rubber"}])";
+  const std::string turning = R"("duration": 3, "bodies": [{"name": "arm", "shape": {"box": {"size": [1, 0.1, 0.1]}},
+      "angularVelocity": [0, 0, 9]}], "hinges": [{"name": "axle", "bodyA": "arm", "anchorB": [0, 0, 0], "axis": [0, 0, 1]}])";
+  const std::string flying = R"("duration": 2, "bodies": [)" + ball + R"(, "linearVelocity": [3, 0, 0]},
+      {"name": "other", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 2, 0]}],
+      "springs": [{"bodyA": "ball", "bodyB": "other", "stiffness": 90, "restLength": 0.5}])";
+  // Two stacks of boxes, of which one is struck late; a third falls over all the time.
+  const std::string resting = R"("duration": 2, "bodies": [)" + floor + R"(,
+      {"name": "a", "shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "position": [0, 0.1, 0]},
+      {"name": "b", "shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "position": [0, 0.3, 0]},
+      {"name": "bob", "shape": {"sphere": {"radius": 0.1}}, "position": [6, 3, 0]}],
+      "rods": [{"bodyA": "bob", "anchorB": [5, 3, 0]}])";
+  const std::string push =
+      R"(, "pushes": [{"body": "ball", "start": 0.1, "duration": 1.8, "force": [30, 0, 0], "point": [0, 1.05, 0]}])";
+  const std::string euler = methodText("explicitEuler", 0.01) + R"(, "duration": 4, "bodies": [)" + ball +
+                            R"(}], "rods": [{"bodyA": "ball", "anchorB": [1, 1, 0]}])";
+  return {
+      {"ledger", bouncing, ofIslands([](IslandRecord& island) { island.state.tail<kLedgerSize>().setZero(); })},
+      {"joints", turning,
+       ofIslands([](IslandRecord& island) { island.joints.assign(island.joints.size(), JointState{}); })},
+      {"measures", flying, ofIslands([](IslandRecord& island) { island.measures = {}; })},
+      {"pushes", springy + push, ofParts([](PartRecord& part) { part.pushes.clear(); })},
+      {"resting", resting, ofParts([](PartRecord& part) { part.history.resting = {}; })},
+      {"bumps", R"("bumps": {"deviationDegrees": 5}, )" + bouncing,
+       ofParts([](PartRecord& part) { part.history.bumps.clear(); })},
+      {"evaluations", springy, [](RunRecord& run) { run.world.evaluations = 0; }},
+      {"contacts", resting, [](RunRecord& run) { run.contacts = {}; }},
+      {"energies", euler, [](RunRecord& run) { run.energies = {}; }},
+  };
+}
+
+bool tellsTheSame(const Told& a, const Told& b) {
+  const auto areSameFrames = [](const Frame& x, const Frame& y) {
+    return x.energy.numerical == y.energy.numerical && x.energy.impact == y.energy.impact &&
+           std::equal(x.contacts.begin(), x.contacts.end(), y.contacts.begin(), y.contacts.end(),
+                      [](const ContactWrench& c, const ContactWrench& d) { return areSame(c, d); }) &&
+           std::equal(x.joints.begin(), x.joints.end(), y.joints.begin(), y.joints.end(),
+                      [](const JointState& c, const JointState& d) { return c.coordinate == d.coordinate; });
+  };
+  return hashOf(a.frames, 0) == hashOf(b.frames, 0) && a.warnings == b.warnings &&
+         std::equal(a.frames.begin(), a.frames.end(), b.frames.begin(), b.frames.end(), areSameFrames) &&
+         std::equal(a.events.begin(), a.events.end(), b.events.begin(), b.events.end(),
+                    [](const Event& c, const Event& d) { return areSame(c, d); }) &&
+         a.contacts.size() == b.contacts.size() && a.cost.evaluations == b.cost.evaluations &&
+         a.cost.promise == b.cost.promise;
+}
+
+// A run that goes on from a record which lacks something tells another story than one that goes on from the whole.
+TEST(Checkpoints, HaveNoMemberThatIsNotNeeded) {
+  for (const Loss& loss : losses()) {
+    const Scene scene = sceneWith(loss.scene);
+    World plain(scene);
+    simulate(scene, plain, {[](const Frame&) {}, [](const Event&) {}, [](const std::string&) {}});
+    const long work = std::max(1L, plain.work() / 4);
+    const std::vector<Checkpoint> checkpoints = tell(scene, work).checkpoints;
+    const bool isSeen = std::any_of(checkpoints.begin(), checkpoints.end(), [&](const Checkpoint& checkpoint) {
+      RunRecord lacking = runRecordOf(checkpoint.record);
+      loss.lose(lacking);
+      return !tellsTheSame(tell(scene, work, bytesOf(lacking)), tell(scene, work, checkpoint.record));
+    });
+    EXPECT_TRUE(isSeen) << loss.name << " is lost at one of " << checkpoints.size();
+  }
+}
+
+/// m: between the bodies of two runs, at most.
+double largestDistance(const Told& a, const Told& b) {
+  double largest = 0;
+  for (std::size_t frame = 0; frame < a.frames.size(); ++frame)
+    for (std::size_t body = 0; body < a.frames[frame].states.size(); ++body)
+      largest =
+          std::max(largest, (a.frames[frame].states[body].position - b.frames[frame].states[body].position).norm());
+  return largest;
+}
+
+// A step that ends at a checkpoint is one of the method's own, with an error below the accuracy; four of them, carried
+// through one or two seconds of these motions, stay below 100 times that. Steps of one length are cut by rounding alone
+// where frames lie at their ends.
+TEST(Checkpoints, LeaveMotionsAsTheyAre) {
+  constexpr long kNever = 1'000'000'000'000;
+  const auto expectNear = [](Scene scene, double most, const std::string& name) {
+    scene.duration = std::min(scene.duration, 2.0);
+    World plain(scene);
+    simulate(scene, plain, {[](const Frame&) {}, [](const Event&) {}, [](const std::string&) {}});
+    const Told whole = tell(scene, std::max(1L, plain.work() / 5));
+    EXPECT_GE(whole.checkpoints.size(), 2) << name;
+    EXPECT_LT(largestDistance(whole, tell(scene, kNever)), most) << name;
+    EXPECT_LT(whole.cost.evaluations, 2 * plain.evaluations()) << name;
+    EXPECT_GT(2 * whole.cost.evaluations, plain.evaluations()) << name;
+  };
+  for (const std::string name :
+       {"newtons_cradle", "coupled_pendulums", "four_bar", "top_on_ground", "slack_rope", "double_pendulum"}) {
+    const Scene scene = loadScene((fs::path(CRADLE_SOURCE_DIR) / "scenes" / (name + ".json")).string()).scene;
+    expectNear(scene, 100 * scene.accuracy, name);
+  }
+  for (const std::string name : {"rk4", "explicitEuler", "semiImplicitEuler"})
+    expectNear(sceneWith(methodText(name, 1.0 / 960) + R"(, "duration": 2, "bodies": [{"name": "ball",
+      "shape": {"sphere": {"radius": 0.1}}, "position": [0.3, 0, 0]}], "springs": [{"bodyA": "ball", "anchorB": [0, 1, 0],
+      "stiffness": 90}])"),
+               1e-9, name);
+}
+
+TEST(Checkpoints, ThatAreDamagedAreRefused) {
+  std::string bytes = bytesOf(RunRecord{});
+  EXPECT_NO_THROW(runRecordOf(bytes));
+  for (const std::size_t at : {std::size_t(0), bytes.size() / 2, bytes.size() - 1}) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 1);
+    EXPECT_THROW(runRecordOf(damaged), Error);
+  }
+  EXPECT_THROW(runRecordOf(bytes.substr(0, bytes.size() - 1)), Error);
+  EXPECT_THROW(runRecordOf(""), Error);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CheckpointsOf, testing::ValuesIn(sceneNames()),
+                         [](const auto& name) { return name.param; });
+
+}  // namespace
+}  // namespace cradle
