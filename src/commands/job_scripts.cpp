@@ -60,7 +60,7 @@ std::string runText(const std::string& scheduler, const JobPlan& plan) {
                           stage.name, quoted(call));
     else
       text += fmt::format("{}xargs -P {} -I{{}} {}", numbers, beside, call);
-    // What is missing was made once, as the logs of GNU parallel say: all tasks look again for what they lack.
+    // Logs of GNU parallel say that missing files were made once: all tasks look again for those.
     const bool forgets = scheduler == "parallel" && stage.name == kCheck;
     text += fmt::format(
         " ||\n  {{ {}echo \"{} has not come to its end, see {}_{}_*.log in $PWD; start $0 again to go on\" >&2; exit "

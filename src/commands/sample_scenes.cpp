@@ -117,7 +117,7 @@ void requireRoomForTar(const fs::path& tar, const DataSet& set, const SampleRang
   }
 }
 
-/// That there are warnings, which are in the samples.
+/// Tells how many samples have warnings, and the first of these.
 void tellWarnings(const std::vector<SampleRecord>& records) {
   const auto warned = [](const auto& record) { return !record.warnings.empty(); };
   const auto first = std::find_if(records.begin(), records.end(), warned);

@@ -137,7 +137,7 @@ void checkAccuracy(const Scene& scene, const std::string& output, bool prints, b
 }
 
 /// Of all that a motion depends on, and of the program.
-std::string fingerprintOf(const Scene& scene, const TrajectoryHeader& header) {
+std::string fingerprintOf(const Scene& scene, const TrajectoryHeader& header, bool isStrict) {
   constexpr std::uint64_t kMaxProgram = 1'000'000'000;  // bytes
   static const std::string program = textHash(readFile("/proc/self/exe", kMaxProgram, ErrorKind::output));
   Hash hash;
@@ -146,6 +146,7 @@ std::string fingerprintOf(const Scene& scene, const TrajectoryHeader& header) {
     hash.add(std::as_bytes(std::span(line)));
   };
   add(program), add(scene.text), add(header.plan), add(header.method);
+  add(isStrict ? "strict" : "");  // would have ended at what others have only told
   add(fmt::format("{} {} {} {}", scene.accuracy, scene.duration, scene.method ? int(scene.method->name) : -1,
                   scene.method ? scene.method->timeStep.value_or(0) : 0));
   for (const Model& mesh : header.meshes) {
@@ -160,11 +161,15 @@ std::optional<Checkpoint> checkpointIn(const std::string& part, const std::funct
   if (!isTrajectoryFile(part)) return std::nullopt;
   try {
     const TrajectoryReader told(part);
-    std::optional<Checkpoint> checkpoint = told.checkpoint();
-    if (!checkpoint || checkpoint->fingerprint != fingerprint()) return std::nullopt;
-    runRecordOf(checkpoint->record);
-    for (long frame = 0; frame <= checkpoint->frame; ++frame) told.readFrame(frame);
-    return checkpoint;
+    const auto stored = told.checkpoint();
+    if (!stored || told.isFinished() || stored->fingerprint != fingerprint()) return std::nullopt;
+    const Checkpoint checkpoint = checkpointOf(runRecordOf(stored->record), stored->record);
+    if (checkpoint.frame >= told.frameCount() || told.countEvents(checkpoint.eventCount) != checkpoint.eventCount ||
+        std::ssize(told.contacts()) < checkpoint.contactCount)
+      return std::nullopt;
+    Hash hash;
+    for (long frame = 0; frame <= checkpoint.frame; ++frame) addFrame(told.readFrame(frame), hash);
+    return hash.hex() == stored->stateHash ? std::optional(checkpoint) : std::nullopt;
   } catch (const Error&) {  // damaged
     return std::nullopt;
   }
@@ -185,7 +190,7 @@ class RunInto {
         cameras_(scene, [&writer](const CameraPose& camera) { writer.append(camera); }),
         progress_("Simulating", "frames", lastFrame(scene) + 1, quiet) {}
 
-  /// What an ended run has told up to its checkpoint.
+  /// Takes over the frames and events of an ended run up to its checkpoint.
   void note(const TrajectoryReader& told, const Checkpoint& checkpoint) {
     const std::vector<Event> events = told.events();
     auto event = events.begin();
@@ -298,7 +303,7 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   World world(scene);
   requireNoWriter(partPath(output));  // planning may have taken long
   const TrajectoryHeader header = headerOf(scene, world.plan());
-  const Fingerprint fingerprint = [&] { return fingerprintOf(scene, header); };
+  const Fingerprint fingerprint = [&] { return fingerprintOf(scene, header, options.isStrict); };
   const std::optional<Checkpoint> from = options.isFresh ? std::nullopt : checkpointIn(partPath(output), fingerprint);
   std::optional<TrajectoryReader> told;
   if (from) told.emplace(partPath(output));

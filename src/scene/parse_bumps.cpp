@@ -8,11 +8,19 @@ namespace {
 constexpr Range kDeviations{0, 30};                             // degrees: three deviations are a right angle
 constexpr Range kSeeds{0, 9'007'199'254'740'991, false, true};  // 2^53 - 1: whole numbers that a double holds
 
+/// The index of a body that has impacts of its own.
+int fallingBody(const Field& field, const SceneDraft& draft, FaultList& faults) {
+  const auto index = findNamed(field, draft.bodyIndex, "body", faults);
+  if (!index) return 0;
+  if (draft.scene.bodies[static_cast<std::size_t>(*index)].motion != Motion::dynamic)
+    addFault(faults, field, "a body that no impact moves; name one that strikes it");
+  return *index;
+}
+
 BumpChange parseChange(const Field& field, const SceneDraft& draft, FaultList& faults) {
   ObjectReader reader(field, faults);
   BumpChange change;
-  if (const auto body = reader.require("body"))
-    change.body = findNamed(*body, draft.bodyIndex, "body", faults).value_or(0);
+  if (const auto body = reader.require("body")) change.body = fallingBody(*body, draft, faults);
   if (reader.require("impact")) change.impact = reader.integer("impact", 1, 1'000'000'000, 1);
   if (const auto seed = reader.require("seed"))
     change.seed = static_cast<std::uint64_t>(readNumber(*seed, kSeeds, "", faults).value_or(0));

@@ -88,7 +88,7 @@ int ImpactBumps::numberOf(double time, std::pair<int, int> bodies) {
   return number;
 }
 
-/// That of the latest change, by its impact; of several the last in the scene.
+/// The seed of the latest change, by its impact; of several the last in the scene.
 std::uint64_t ImpactBumps::seedOf(int body, int impact) const {
   std::uint64_t seed = scene_.bumps->seed;
   int from = 0;

@@ -118,7 +118,7 @@ void visit(Archive& archive, Visited<Archive, StepLoss::Energies>& energies) {
 
 template <class Archive>
 void visit(Archive& archive, Visited<Archive, RunRecord>& run) {
-  archive(run.world, run.contacts, run.energies, run.cpuSeconds);
+  archive(run.world, run.contacts, run.energies, run.warnings, run.events, run.cpuSeconds);
 }
 
 void addResting(const PartRecord& part, const std::vector<int>& sceneBodies, std::vector<char>& isResting) {
@@ -131,6 +131,10 @@ std::string bytesOf(const RunRecord& record) {
   ByteWriter writer;
   writer(record);
   return textHash(writer.bytes()) + writer.bytes();
+}
+
+Checkpoint checkpointOf(const RunRecord& record, const std::string& bytes) {
+  return {record.world.frame, record.events, record.contacts.count(), record.contacts.goingOn(), bytes};
 }
 
 RunRecord runRecordOf(std::string_view bytes) {

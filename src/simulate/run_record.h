@@ -14,10 +14,15 @@ struct RunRecord {
   WorldRecord world;
   LastingContacts contacts;
   StepLoss::Energies energies;
+  std::vector<std::string> warnings;
+  long events = 0;        // but those of lasting contacts
   double cpuSeconds = 0;  // of integration
 };
 
 std::string bytesOf(const RunRecord& record);
+
+/// With those bytes.
+Checkpoint checkpointOf(const RunRecord& record, const std::string& bytes);
 
 /// Of this build. Throws Error(output) if they are damaged.
 RunRecord runRecordOf(std::string_view bytes);

@@ -106,14 +106,19 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink) {
   return simulate(scene, run, sink);
 }
 
-RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink, const std::string& record,
+RunCost simulate(const Scene& scene, World& run, const SimulationSink& told, const std::string& record,
                  long checkpointWork) {
   CpuStopwatch integration;
+  RunRecord soFar;
+  SimulationSink sink = told;
+  sink.warning = [&](const std::string& warning) {
+    soFar.warnings.push_back(warning);
+    told.warning(warning);
+  };
   LifeSign sign(sink.reached);
   std::function<void(double)> note;
   if (sink.reached) note = [&sign](double time) { sign.note(time); };
   if (sink.contact) run.tellContacts();
-  RunRecord soFar;
   const auto goOnFrom = [&](const std::string& bytes) {
     soFar = runRecordOf(bytes);
     run.goOnFrom(soFar.world);
@@ -124,6 +129,7 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink, con
     for (const std::string& warning : run.startWarnings()) sink.warning(warning);
   } else {
     goOnFrom(record);
+    for (const std::string& warning : soFar.warnings) told.warning(warning);
     first = soFar.world.frame + 1;
   }
   LastingContacts& contacts = soFar.contacts;
@@ -145,7 +151,9 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink, con
     integration.stop();
     for (const Event& event : run.takeEvents(frame.time)) {
       if (sink.contact) contacts.note(event);
-      if (!isOfLastingContact(event.kind)) sink.event(event);
+      if (isOfLastingContact(event.kind)) continue;
+      sink.event(event);
+      ++soFar.events;
     }
     tellOfPromises(run, sink);
     for (const Correction& correction : run.takeCorrections()) {
@@ -162,7 +170,7 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink, con
     if (!schedule.isAt(number, run)) continue;
     soFar.world = run.record(), soFar.cpuSeconds = secondsOfAll();
     const std::string bytes = bytesOf(soFar);
-    if (sink.checkpoint) sink.checkpoint({number, contacts.count(), contacts.goingOn(), bytes});
+    if (sink.checkpoint) sink.checkpoint(checkpointOf(soFar, bytes));
     goOnFrom(bytes);
   }
   run.finish();

@@ -39,7 +39,7 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink);
 constexpr long kCheckpointWork = 3'000'000;
 
 /// The same for a run that has been begun, and is at its start, or goes on from the record of a Checkpoint: `sink` is
-/// told what is behind that. `scene` has passed refuseUnsupported.
+/// told what is behind that, and the warnings from the start on. `scene` has passed refuseUnsupported.
 RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink, const std::string& record = "",
                  long checkpointWork = kCheckpointWork);
 

@@ -82,7 +82,7 @@ std::vector<double> radiiOf(const Scene& scene) {
   return radii;
 }
 
-/// The largest distance of points of a body from where they are in the other state, in sizes of the body: twice its
+/// A bound on the distance of any point of a body from its place in the other state, in sizes of the body: twice its
 /// radius (m).
 double offsetInSizes(const BodyState& state, const BodyState& reference, double radius) {
   const double turned = state.orientation.angularDistance(reference.orientation);

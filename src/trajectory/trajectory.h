@@ -92,16 +92,17 @@ struct Frame {
   std::vector<ContactWrench> contacts = {};  // if they were asked for; ascending by bodies
 };
 
-/// contactBegin and contactEnd are those of a LastingContact: no trajectory has them as events of their own.
-/// What a run can go on from that was ended.
+/// A place from which a run goes on that was ended.
 struct Checkpoint {
   long frame = 0;                // the last one by then
+  long eventCount = 0;           // of events by then
   long contactCount = 0;         // of lasting contacts by then
   std::vector<long> goingOn;     // those of them that have not ended, by number
-  std::string record;            // bytes that the build that wrote them can read
+  std::string record;            // bytes, for the build of the program that wrote them; all of the above is in them
   std::string fingerprint = {};  // of that build, and of all that the motion depends on
 };
 
+/// contactBegin and contactEnd are those of a LastingContact: no trajectory has them as events of their own.
 enum class EventKind {
   impact,
   taut,

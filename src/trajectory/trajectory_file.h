@@ -119,8 +119,15 @@ class TrajectoryReader {
   /// What lasting contacts do at a frame, by their numbers. Amortised O(contacts) if frames are read in their order.
   std::vector<ContactWrench> contactsAt(long number) const;
 
-  /// What an unfinished run goes on from, if it has come to that.
-  std::optional<Checkpoint> checkpoint() const;
+  /// The checkpoint of an unfinished run, if it has come to one.
+  struct StoredCheckpoint {
+    std::string record, fingerprint;  // of Checkpoint
+    std::string stateHash;            // of the frames by then
+  };
+  std::optional<StoredCheckpoint> checkpoint() const;
+
+  /// How many of the first so many events are there.
+  long countEvents(long first) const;
 
   /// By frame, of those whose camera was known. Empty in trajectories of earlier versions.
   std::vector<CameraPose> cameras() const;

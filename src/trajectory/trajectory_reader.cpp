@@ -460,20 +460,19 @@ std::vector<LastingContact> TrajectoryReader::contacts() const {
   return contacts;
 }
 
-std::optional<Checkpoint> TrajectoryReader::checkpoint() const {
+std::optional<TrajectoryReader::StoredCheckpoint> TrajectoryReader::checkpoint() const {
   Database& database = *session_->database;
   if (countTables(database, "('checkpoint')") < 1) return std::nullopt;
-  Statement query = database.prepare("SELECT frame, contacts, record, fingerprint FROM checkpoint");
+  Statement query = database.prepare("SELECT record, fingerprint, stateHash FROM checkpoint");
   if (!query.step()) return std::nullopt;
-  Checkpoint checkpoint{
-      static_cast<long>(query.integer(0)), static_cast<long>(query.integer(1)), {}, {}, query.text(3)};
-  const std::span<const std::byte> record = query.blob(2);
-  checkpoint.record.assign(reinterpret_cast<const char*>(record.data()), record.size());
-  if (checkpoint.frame < 0 || checkpoint.frame >= frameCount())
-    database.failDamaged("its checkpoint is of no frame of it");
-  Statement goingOn = database.prepare("SELECT value FROM checkpoint, json_each(checkpoint.goingOn)");
-  while (goingOn.step()) checkpoint.goingOn.push_back(static_cast<long>(goingOn.integer(0)));
-  return checkpoint;
+  const std::span<const std::byte> record = query.blob(0);
+  return StoredCheckpoint{std::string(reinterpret_cast<const char*>(record.data()), record.size()), query.text(1),
+                          query.text(2)};
+}
+
+long TrajectoryReader::countEvents(long first) const {
+  return static_cast<long>(
+      oneInteger(*session_->database, fmt::format("SELECT count(*) FROM event WHERE rowid <= {}", first)));
 }
 
 std::vector<CameraPose> TrajectoryReader::cameras() const {

@@ -60,11 +60,9 @@ CREATE TABLE camera (frame INTEGER PRIMARY KEY,  -- of pictures of the scene's s
   qw, qx, qy, qz,  -- world from camera: x right, y up, z against the view
   verticalFieldOfView);  -- rad
 CREATE TABLE checkpoint (frame INTEGER PRIMARY KEY,  -- of an unfinished run, the latest
-  events INTEGER,          -- of the table `event`, by then
-  contacts INTEGER,        -- of the table `contact`, by then
-  goingOn TEXT,            -- JSON: ids of those that have not ended
-  record BLOB,             -- what the run goes on from
-  fingerprint TEXT);       -- of the build of the program that can, and of all that the motion depends on
+  record BLOB,       -- what the run goes on from
+  fingerprint TEXT,  -- of the build of the program that can, and of all that the motion depends on
+  stateHash TEXT);   -- of the frames by then
 CREATE TABLE energy (frame INTEGER PRIMARY KEY, kinetic, potential, dissipated, work,  -- J
   px, py, pz,   -- kg m/s
   lx, ly, lz,   -- kg m^2/s, about the world origin

@@ -233,8 +233,7 @@ struct TrajectoryWriter::Session {
         force(database->prepare("INSERT INTO contact_force VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         camera(database->prepare("INSERT INTO camera VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         event(database->prepare("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
-        checkpoint(database->prepare(
-            "INSERT INTO checkpoint VALUES (?, (SELECT coalesce(max(rowid), 0) FROM event), ?, ?, ?, ?)")) {}
+        checkpoint(database->prepare("INSERT INTO checkpoint VALUES (?, ?, ?, ?)")) {}
 
   std::unique_ptr<Database> database;
   Statement frame, state, energy, joint, contact, force, camera, event, checkpoint;
@@ -269,11 +268,10 @@ TrajectoryWriter::TrajectoryWriter(const std::string& path, const TrajectoryHead
   framesAppended_ = framesCommitted_ = checkpoint.frame + 1;
 }
 
-/// What the run has told after its checkpoint.
+/// Drops the rows that the run has told after its checkpoint, and all cameras.
 void TrajectoryWriter::dropBehind(const Checkpoint& checkpoint) {
   Database& database = *session_->database;
-  database.execute(fmt::format("DELETE FROM event WHERE rowid > (SELECT events FROM checkpoint WHERE frame = {})",
-                               checkpoint.frame));
+  database.execute(fmt::format("DELETE FROM event WHERE rowid > {}", checkpoint.eventCount));
   database.execute(fmt::format("DELETE FROM frame WHERE id > {}", checkpoint.frame));
   database.execute("DELETE FROM camera");
   for (const char* table : {"state", "energy", "joint_state", "contact_force"})
@@ -282,7 +280,7 @@ void TrajectoryWriter::dropBehind(const Checkpoint& checkpoint) {
   database.execute(fmt::format("UPDATE contact SET end = NULL WHERE id IN ({})", listOf(checkpoint.goingOn)));
 }
 
-/// What the rows until then have left of hashes and last forces.
+/// Takes hash, time and last forces from the rows up to the checkpoint.
 void TrajectoryWriter::readUntil(const Checkpoint& checkpoint) {
   Database& database = *session_->database;
   Statement times = database.prepare("SELECT id, time FROM frame ORDER BY id");
@@ -435,10 +433,9 @@ void TrajectoryWriter::append(const Checkpoint& checkpoint) {
   session_->database->execute("DELETE FROM checkpoint");
   Statement& insert = session_->checkpoint;
   insert.bind(1, checkpoint.frame);
-  insert.bind(2, checkpoint.contactCount);
-  insert.bind(3, "[" + listOf(checkpoint.goingOn) + "]");
-  insert.bind(4, std::as_bytes(std::span(checkpoint.record)));
-  insert.bind(5, checkpoint.fingerprint);
+  insert.bind(2, std::as_bytes(std::span(checkpoint.record)));
+  insert.bind(3, checkpoint.fingerprint);
+  insert.bind(4, stateHash_.hex());
   insert.run();
 }
 

@@ -122,7 +122,7 @@ class KilledRuns(unittest.TestCase):
         spheres = [{"name": "ball%d" % k, "shape": {"sphere": {"radius": 0.1}}, "position": [0, -k, 0.01 * k]} for k in range(5)]
         springs = [{"bodyA": "ball%d" % k, **({"bodyB": "ball%d" % (k - 1)} if k else {"anchorB": [0, 1, 0]}), "stiffness": 5000}
                    for k in range(5)]
-        write(path("long.json"), scene(8, bodies=spheres, springs=springs, method={"name": "rk4", "timeStep": 8e-6}))
+        write(path("long.json"), scene(8, bodies=spheres, springs=springs, method={"name": "rk4", "timeStep": 1.5e-5}))
         write(path("film.json"), scene(0.5, method={"name": "rk4", "timeStep": 1e-5}))
         sphere = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}
         write(path("short.json"), scene(0.5, bodies=[sphere]))
@@ -130,7 +130,7 @@ class KilledRuns(unittest.TestCase):
         floor = {"name": "floor", "shape": {"plane": {}}, "motion": "static"}
         wish = {"body": "ball", "inside": {"min": [0, -9, -9], "max": [9, 9, 9]}, "deviation": 0.2}
         write(path("drawn.json"), scene(0.2, bodies=[floor, drawn], springs=[], wishes=[wish], bumps={"deviationDegrees": 3},
-                                        method={"name": "rk4", "timeStep": 1e-5}))
+                                        method={"name": "rk4", "timeStep": 4e-5}))
         crowd = {**sphere, "copies": {"count": [10, 10, 5], "spacing": [1, 1, 1]}}
         for name, document in (("crowd", scene(2, bodies=[crowd], springs=[], output={"framesPerSecond": 120})),
                                ("earlier", scene(0.1))):
@@ -270,8 +270,11 @@ class KilledRuns(unittest.TestCase):
         self.assertEqual(database.execute("select count(*) from checkpoint").fetchone(), (0,))
         database.close()
         for options, damage in ((["--fresh"], ""), ([], "update checkpoint set record = zeroblob(length(record))"),
-                                ([], "update checkpoint set fingerprint = '0'"), ([], "update checkpoint set frame = 9999"),
-                                ([], "delete from state where frame = 3"), ([], "delete from checkpoint")):
+                                ([], "update checkpoint set fingerprint = '0'"), ([], "update checkpoint set stateHash = '0'"),
+                                ([], "delete from frame where id = 3"),
+                                ([], "update state set px = px + 1 where frame = 3 and body = 1"),
+                                ([], "insert into meta values ('stateHash', '0')"), ([], "delete from checkpoint"),
+                                (["--strict"], "")):
             os.remove(os.path.join(folder, "out", "a.sqlite"))
             shutil.copy(kept, part)
             database = sqlite3.connect(part)

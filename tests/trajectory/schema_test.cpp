@@ -39,8 +39,8 @@ class TrajectorySchema : public testing::Test {
 
 TEST_F(TrajectorySchema, HasTheTablesOfTheContract) {
   EXPECT_EQ(rows("SELECT name FROM sqlite_master WHERE type != 'index' ORDER BY name"),
-            (std::vector<std::string>{"body", "camera", "contact", "contact_force", "energy", "event", "frame", "joint",
-                                      "joint_state", "mesh", "meta", "state"}));
+            (std::vector<std::string>{"body", "camera", "checkpoint", "contact", "contact_force", "energy", "event",
+                                      "frame", "joint", "joint_state", "mesh", "meta", "state"}));
 }
 
 TEST_F(TrajectorySchema, HasTheColumnsOfTheContractInItsOrder) {
