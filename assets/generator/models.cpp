@@ -114,6 +114,22 @@ Surface lPrism() {
   return surface;
 }
 
+// A cone on the ground, as high as wide; its side is smooth around, and the tip is a corner of each facet of its own.
+Surface cone() {
+  constexpr std::size_t kSides = 24;
+  constexpr double kRadius = 0.15, kHeight = 0.3;  // m
+  Surface surface{"Cone", 0, {}, {}};
+  surface.add({0, kHeight, 0});
+  surface.add(Vec3::Zero());
+  for (std::size_t i = 0; i < kSides; ++i) surface.add(kRadius * aroundY(2 * pi * fraction(i, kSides)));
+  for (std::size_t i = 0; i < kSides; ++i) {
+    const std::size_t here = 2 + i, next = 2 + (i + 1) % kSides;
+    surface.addTriangle(0, here, next, 1);
+    surface.addTriangle(1, next, here, kSharp);
+  }
+  return surface;
+}
+
 /// A tube around y, divided into that many sections of that many sides; lengths in m.
 Surface tubeRing(const char* name, double radius, double tubeRadius, std::size_t count, std::size_t sides) {
   std::vector<Section> sections;
@@ -244,6 +260,7 @@ Model cradleFrame() {
 std::vector<Model> allModels() {
   return {{"ball.3ds", {{"Steel", {200, 205, 212}}}, {ball()}},
           {"box.3ds", {{"Birch", {214, 182, 138}}}, {box()}},
+          {"cone.3ds", {{"Amber", {226, 160, 48}}}, {cone()}},
           cradleFrame(),
           {"die.3ds", {{"Ivory", {238, 231, 214}, "die.png"}}, {die()}},
           {"gear.3ds", {{"Brass", {196, 160, 82}}}, {gear()}},

@@ -179,10 +179,10 @@ std::optional<Checkpoint> checkpointIn(const std::string& part, const std::funct
 using Fingerprint = std::function<std::string()>;
 
 /// A simulation into a trajectory file.
-class RunInto {
+class FileRun {
  public:
   /// Keeps references; `watch` may be null.
-  RunInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet)
+  FileRun(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet)
       : writer_(writer),
         scene_(scene),
         world_(world),
@@ -285,12 +285,12 @@ Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
 }
 
 void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, bool quiet) {
-  RunInto(writer, scene, world, nullptr, quiet).finish("", {});
+  FileRun(writer, scene, world, nullptr, quiet).finish("", {});
 }
 
 std::optional<std::string> simulateUntilItFails(TrajectoryWriter& writer, const Scene& scene, World& world,
                                                 bool quiet) {
-  return RunInto(writer, scene, world, nullptr, quiet).finishOrFail("", {});
+  return FileRun(writer, scene, world, nullptr, quiet).finishOrFail("", {});
 }
 
 void simulateScene(const std::string& scenePath, const std::string& output, const SimulateOptions& options,
@@ -317,7 +317,7 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
     throw Error(kind, "", kept.empty() ? what : fmt::format("{}; the frames up to then are in {}", what, kept));
   };
   try {
-    RunInto run(writer, scene, world, watch ? &*watch : nullptr, quiet);
+    FileRun run(writer, scene, world, watch ? &*watch : nullptr, quiet);
     if (from) {
       if (!quiet)
         show(stderr, "note: going on after frame {} of {}; --fresh begins anew\n", from->frame,

@@ -294,7 +294,7 @@ WorldRecord World::record() const {
 
 void World::goOnFrom(const WorldRecord& record) {
   CRADLE_CHECK(hasRecords());
-  before_ = record;
+  before_ = {record.corrections, record.evaluations, record.work};
   lastTime_ = record.time, lastFrame_ = record.frame;
   promiseEnds_ = record.promiseEnds, isToldOf_ = record.isToldOf;
   events_.clear(), warnings_.clear(), newEnds_.clear();

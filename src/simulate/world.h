@@ -128,7 +128,11 @@ class World {
   double lastTime_ = 0;                               // s, of the latest frame
   long lastFrame_ = 0;
   bool tellsContacts_ = false;
-  WorldRecord before_;  // what was counted by then; empty if it began at the start
+  struct Counts {
+    std::array<long, kCorrectionKinds> corrections = {};
+    long evaluations = 0, work = 0;
+  };
+  Counts before_;  // the record that it has gone on from
 };
 
 }  // namespace cradle

@@ -58,6 +58,14 @@ TEST(Assets, BoxIsExact) {
   EXPECT_EQ(box.model.drawn.vertices.size(), 24U);  // sharp edges
 }
 
+// A pyramid over a polygon of 24 corners, a third of its prism; its centre of mass is a quarter of the height up.
+TEST(Assets, ConeHasItsClosedForm) {
+  const LoadedModel cone = loadAsset("cone.3ds", "convex");
+  expectVolume(cone, polygonArea(24, 0.15) * 0.3 / 3, 3 * kFloat);
+  const MassProperties properties = computeMassProperties(cone.model.solid, 1);
+  EXPECT_LT((properties.centerOfMass - Vec3(0, 0.075, 0)).norm(), kFloat);
+}
+
 TEST(Assets, LPrismHasItsClosedForm) {
   const LoadedModel prism = loadAsset("l_prism.3ds", "mesh");
   expectVolume(prism, 0.004, kFloat);
