@@ -18,7 +18,7 @@ struct ChainState {
   ImpactCounts impacts = {};                      // of its motion, if that has bumps
 };
 
-/// What is drawn, and then came of it.
+/// The outcome of numbers and bumps that were drawn.
 struct ChainOutcome {
   double logLikelihood = 0;  // -infinity: it cannot be
   ImpactCounts impacts = {};
@@ -35,7 +35,7 @@ struct ChainOutcome {
 /// of the step.
 class MetropolisChain {
  public:
-  /// What comes of the numbers of a source, with such bumps.
+  /// The outcome of the numbers of a source, with such bumps.
   using Evaluate = std::function<ChainOutcome(const UniformSource&, const std::vector<NamedBumpChange>&)>;
 
   /// `places`: pointers of all draws; `stream` is the chain's own.
@@ -48,7 +48,7 @@ class MetropolisChain {
   const ChainState& state() const { return state_; }
 
  private:
-  /// What a step goes to if it is accepted.
+  /// The state to which a step goes if it is accepted.
   struct Proposal {
     UniformNumbers numbers;
     std::vector<NamedBumpChange> bumpChanges;

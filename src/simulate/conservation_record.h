@@ -40,7 +40,7 @@ class Drift {
 /// their radii of gyration would give. The measures of the momenta are the largest sums of the bodies' magnitudes.
 class ConservationRecord {
  public:
-  /// What it has measured so far.
+  /// Its measures so far.
   struct Measures {
     double startTime = 0;  // s
     Invariants start;

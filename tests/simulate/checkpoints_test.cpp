@@ -169,6 +169,7 @@ std::vector<Loss> losses() {
       {"bumps", R"("bumps": {"deviationDegrees": 5}, )" + bouncing,
        ofParts([](PartRecord& part) { part.history.bumps.clear(); })},
       {"evaluations", springy, [](RunRecord& run) { run.world.evaluations = 0; }},
+      {"warnings", euler, [](RunRecord& run) { run.warnings = {"another"}; }},
       {"contacts", resting, [](RunRecord& run) { run.contacts = {}; }},
       {"energies", euler, [](RunRecord& run) { run.energies = {}; }},
   };
