@@ -33,8 +33,9 @@ std::string describedPictures(const SampleOptions& options, const PictureOptions
   return text;
 }
 
-/// Removes the files that a run which was ended left of a sample, with which options nobody knows; a trajectory of the
-/// same scene stays. Throws Error(output) where another run fills the folder, or where others' files are.
+/// Removes the files that a run which was ended left of a sample, with which options nobody knows; an unfinished
+/// trajectory of the same scene stays, to be gone on with: of a whole one nobody knows the warnings. Throws
+/// Error(output) where another run fills the folder, or where others' files are.
 void clearUnfinished(const fs::path& folder, bool keepsTrajectory) {
   requireFramesAlone(folder.string());
   const FolderLock lock(folder.string(), FolderUse::alone);
@@ -43,7 +44,8 @@ void clearUnfinished(const fs::path& folder, bool keepsTrajectory) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
   for (const fs::path& file : files) {
     const std::string name = file.filename().string();
-    if (!keepsTrajectory || (name != kSceneFile && !name.starts_with(kKeptTrajectory))) fs::remove(file);
+    const bool isUnfinished = name.starts_with(kKeptTrajectory) && name != kKeptTrajectory;
+    if (!keepsTrajectory || !(name == kSceneFile || isUnfinished)) fs::remove(file);
   }
 }
 
@@ -106,11 +108,10 @@ bool DataSet::isWhole(const SampleRecord& found, const SampleRecord& wanted) con
 
 void DataSet::simulate(const fs::path& folder, const Scene& scene, SampleRecord& record) const {
   const std::string trajectory = (folder / kKeptTrajectory).string();
-  record.stateHash = stateHashOf(trajectory);
   const CollectedWarnings warnings;
   try {
-    if (options_.findsHorizon) record.horizon = horizonIn(trajectory);
-    if (record.stateHash.empty() || (options_.findsHorizon && record.horizon.empty())) {
+    const bool isSimulated = !record.stateHash.empty() && stateHashOf(trajectory) == record.stateHash;
+    if (!isSimulated || (options_.findsHorizon && record.horizon.empty())) {
       SimulateOptions simulation;
       simulation.scene.assetRoot = pictures_.assetRoot, simulation.findsHorizon = options_.findsHorizon;
       simulateScene((folder / kSceneFile).string(), trajectory, simulation, true);

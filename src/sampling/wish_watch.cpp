@@ -131,7 +131,7 @@ double logLikelihood(const std::vector<Wish>& wishes, const std::vector<WishOutc
     const double deviations = outcomes[i].distance / wishes[i].deviation;
     sum += deviations * deviations;
   }
-  return -sum / 2;
+  return 0 - sum / 2;  // not -0
 }
 
 std::vector<WishOutcome> unmet(std::size_t wishes) {

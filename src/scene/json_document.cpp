@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -249,7 +250,9 @@ std::string textOfLeaf(const JsonValue& value) {
   struct {
     std::string operator()(std::nullptr_t) const { return "null"; }
     std::string operator()(bool truth) const { return truth ? "true" : "false"; }
-    std::string operator()(double number) const { return fmt::format("{}", number); }
+    std::string operator()(double number) const {
+      return number == 0 && std::signbit(number) ? "-0.0" : fmt::format("{}", number);  // "-0" is read as 0
+    }
     std::string operator()(const std::string& text) const { return nlohmann::json(text).dump(); }
     std::string operator()(const JsonValue::Array&) const { return "[]"; }
     std::string operator()(const JsonValue::Object&) const { return "{}"; }

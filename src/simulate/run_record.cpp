@@ -102,7 +102,7 @@ void visit(Archive& archive, Visited<Archive, GroupRecord>& group) {
 template <class Archive>
 void visit(Archive& archive, Visited<Archive, WorldRecord>& world) {
   archive(world.time, world.frame, world.islands, world.groups, world.promiseEnds, world.isToldOf, world.corrections,
-          world.evaluations, world.work);
+          world.evaluations);
 }
 
 template <class Archive>

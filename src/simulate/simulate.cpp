@@ -47,15 +47,14 @@ void endContacts(LastingContacts& contacts, const SimulationSink& sink) {
 /// When checkpoints are: at the first frame that no step under way goes beyond, after so much work.
 class CheckpointSchedule {
  public:
-  /// Keeps a reference to `scene`. `workThen`: by the latest checkpoint.
-  CheckpointSchedule(const Scene& scene, long work, long workThen) : scene_(scene), work_(work), workThen_(workThen) {}
+  /// Keeps a reference to `scene`.
+  CheckpointSchedule(const Scene& scene, long work) : scene_(scene), work_(work) {}
 
   /// To be asked behind each frame: whether it has a checkpoint. If the next one is due, steps are to end at it.
   bool isAt(long frame, World& run) {
     if (next_ > 0) {
       if (frame < next_) return false;
-      next_ = 0;
-      workThen_ = run.work();
+      next_ = 0, workThen_ = 0;  // as the run then goes on from its record
       return true;
     }
     if (!run.hasRecords() || run.work() - workThen_ < work_) return false;
@@ -70,7 +69,7 @@ class CheckpointSchedule {
 
  private:
   const Scene& scene_;
-  long work_, workThen_;
+  long work_, workThen_ = 0;
   long next_ = 0;  // frame; 0: none is due
 };
 
@@ -144,7 +143,7 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& told, con
       throw;
     }
   };
-  CheckpointSchedule schedule(scene, checkpointWork, soFar.world.work);
+  CheckpointSchedule schedule(scene, checkpointWork);
   for (long number = first; number <= lastFrame(scene); ++number) {
     sign.beginFrame();
     Frame frame = frameAt(number);

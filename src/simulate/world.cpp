@@ -288,13 +288,13 @@ WorldRecord World::record() const {
     for (std::size_t kind = 0; kind < kCorrectionKinds; ++kind)
       record.corrections[kind] += solver.corrections().counts()[kind];
   });
-  record.evaluations = evaluations(), record.work = work();
+  record.evaluations = evaluations();
   return record;
 }
 
 void World::goOnFrom(const WorldRecord& record) {
   CRADLE_CHECK(hasRecords());
-  before_ = {record.corrections, record.evaluations, record.work};
+  before_ = {record.corrections, record.evaluations};
   lastTime_ = record.time, lastFrame_ = record.frame;
   promiseEnds_ = record.promiseEnds, isToldOf_ = record.isToldOf;
   events_.clear(), warnings_.clear(), newEnds_.clear();
@@ -321,7 +321,7 @@ void World::goOnFrom(const WorldRecord& record) {
 }
 
 long World::work() const {
-  long sum = before_.work;
+  long sum = 0;
   for (const auto& solver : solvers_) sum += solver->work();
   for (const auto& group : groups_) sum += group->work();
   return sum;

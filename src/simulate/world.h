@@ -77,7 +77,8 @@ class World {
   /// Throws all motion away and builds it again from a record.
   void goOnFrom(const WorldRecord& record);
 
-  /// As IslandSolver's, of all, so far: a measure of time that is the same in each run.
+  /// As IslandSolver's, of all, since the start or the record gone on from: a measure of time that is the same in each
+  /// run.
   long work() const;
 
   /// Impacts with bumps of each scene body so far; none for those that have had none.
@@ -130,7 +131,7 @@ class World {
   bool tellsContacts_ = false;
   struct Counts {
     std::array<long, kCorrectionKinds> corrections = {};
-    long evaluations = 0, work = 0;
+    long evaluations = 0;
   };
   Counts before_;  // the record that it has gone on from
 };

@@ -61,7 +61,7 @@ struct WorldRecord {
   std::vector<std::optional<PromiseEnd>> promiseEnds;
   std::array<char, kCorrectionKinds> isToldOf = {};
   std::array<long, kCorrectionKinds> corrections = {};
-  long evaluations = 0, work = 0;
+  long evaluations = 0;
 };
 
 }  // namespace cradle

@@ -245,6 +245,17 @@ class Samples(InTemporaryFolder):
         self.assertEqual(self.index("set")[:2], before)
         self.assertEqual(os.stat(kept).st_mtime_ns, stamp)
 
+    def test_a_sample_without_its_record_is_made_again_with_its_warnings(self):
+        arguments = ("sample", self.drawn(method={"name": "explicitEuler", "timeStep": 0.05}), "-n", "1", "--simulate", "-qq",
+                     "-o", self.path("set"))
+        record = self.path("set/sample_000000/sample.json")
+        cradle(*arguments)
+        before = content(record)
+        self.assertTrue(json.loads(before)["warnings"])
+        os.remove(record)  # as a kill behind the trajectory leaves it
+        cradle(*arguments)
+        self.assertEqual(content(record), before)
+
     def test_whole_samples_are_not_replaced_by_others(self):
         arguments = ("sample", self.drawn(), "-o", self.path("set"), "-n", "2")
         cradle(*arguments, "--seed", "1", "--render", "--frames", "0:1", "--size", "64x36")
@@ -396,11 +407,12 @@ class Samples(InTemporaryFolder):
     def test_pictures_of_an_ended_run_with_other_options_do_not_stay(self):
         arguments = ("sample", self.drawn(), "-o", self.path("set"), "--render", "--frames")
         cradle(*arguments, "0:3")
-        states = content(self.path("set/sample_000000/trajectory.sqlite"))
+        (before,) = self.index("set")
         os.remove(self.path("set/sample_000000/sample.json"))  # as a kill leaves it
         self.assertEqual(cradle(*arguments, "0:1", "--size", "32x18").returncode, 0)
         self.assertEqual([name for name in os.listdir(self.path("set/sample_000000")) if name.startswith("frame")], ["frame_000000.png"])
-        self.assertEqual(content(self.path("set/sample_000000/trajectory.sqlite")), states)
+        (after,) = self.index("set")
+        self.assertEqual(after["stateHash"], before["stateHash"])
 
     def test_a_killed_data_set_goes_on_with_the_same_bits_and_leaves_no_process(self):
         arguments = ("sample", self.drawn(), "-n", "6", "--render", "--frames", "0:4", "-o")

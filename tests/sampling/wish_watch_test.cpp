@@ -59,6 +59,7 @@ TEST_F(Wishes, TellTheDistanceOfTheCentreOfMassFromABox) {
   EXPECT_EQ(motion.outcomes[1].distance, 0);
   EXPECT_TRUE(motion.outcomes[1].isMet);
   EXPECT_NEAR(motion.logLikelihood, -2.5 * 2.5 / 2, 1e-8);
+  EXPECT_FALSE(std::signbit(logLikelihood({}, {})));
 }
 
 TEST_F(Wishes, TellTheAngleOfADirectionFromUp) {

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
+
 #include "scene/scene_texts.h"
 
 namespace cradle {
@@ -151,6 +153,16 @@ TEST(Json, HasAtMostFourMillionValues) {
   EXPECT_THAT(errorOf(most + "0, \"k\": \"v\"}]").what(), HasSubstr("more than 4000000 values"));
   EXPECT_THAT(errorOf("[" + repeated("[],", 4'000'000) + "[]]").what(), HasSubstr("1:11999999: the text has more"));
   EXPECT_THAT(errorOf("a," + repeated("0,", 4'000'000)).what(), HasSubstr("no JSON"));
+}
+
+TEST(Json, NumbersAreReadAsTheyWereWritten) {
+  for (const double number : {0.0, -0.0, 1.0, -7.0, 0.1, 1e300, 4.9e-324, 9007199254740993.0}) {
+    FaultList faults("f", ErrorKind::scene);
+    const JsonValue written{{}, JsonValue::Object{{"a", {}, JsonValue{{}, number}}}};
+    const JsonValue read = readJson(writeJson(written), faults);
+    const double again = std::get<double>(std::get<JsonValue::Object>(read.content)[0].value.content);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(again), std::bit_cast<std::uint64_t>(number)) << number;
+  }
 }
 
 }  // namespace
