@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "commands/chart_stability.h"
+#include "commands/check_scene.h"
 #include "commands/compare.h"
 #include "commands/export_trajectory.h"
 #include "commands/film.h"
@@ -313,15 +314,17 @@ void addQuestions(CLI::App& app, CommandLine& line) {
       ->allow_extra_args(false);
   inspect->add_flag("--json", line.inspection.asJson, "print JSON");
 
-  auto* check =
-      addCommand(app, line, "check", "Check a scene and its meshes without simulating",
-                 "cradle check scenes/newtons_cradle.json", [&] { checkScene(line.input, line.simulation.scene); });
+  auto* check = addCommand(app, line, "check", "Check a scene and its meshes without simulating",
+                           "cradle check scenes/newtons_cradle.json\n  cradle check scenes/newtons_cradle.json --json",
+                           [&] { checkScene(line.input, line.simulation.scene, line.json); });
   check->add_option("scene", line.input, "scene file (JSON)")->required();
+  check->add_flag("--json", line.json, "print JSON");
   addAssetRoot(check, line.simulation.scene.assetRoot);
 
   auto* compare =
       addCommand(app, line, "compare", "Compare images, folders of images, or trajectories (exit 9: different)",
-                 "cradle compare expected/ actual/ --report report.html",
+                 "cradle compare expected/ actual/ --report report.html --junit compare.xml\n"
+                 "  cradle compare expected.sqlite actual.sqlite --json",
                  [&] { compareResults(line.expected, line.actual, line.comparison); });
   compare->add_option("expected", line.expected, "image, folder or trajectory")->required();
   compare->add_option("actual", line.actual, "the same kind")->required();
@@ -332,6 +335,9 @@ void addQuestions(CLI::App& app, CommandLine& line) {
   compare->add_option("--striking", line.comparison.striking,
                       "the same for large differences (default: 32:0.001, and 1)");
   compare->add_option("--report", line.comparison.report, "page to write (.html): the pictures that differ, to swap");
+  compare->add_option("--junit", line.comparison.junit,
+                      "report to write (.xml), as services of continuous integration show it: a test case a picture");
+  compare->add_flag("--json", line.comparison.asJson, "print JSON");
   compare->add_option("--tolerance", line.comparison.tolerance, "for trajectories: max |x-x_ref|/(1+|x_ref|)")
       ->capture_default_str();
 

@@ -13,51 +13,66 @@ std::string sizesText(const Vec3& size) {
   return fmt::format("{:.4g} x {:.4g} x {:.4g} m", size.x(), size.y(), size.z());
 }
 
-std::string sizesText(const Model& model) {
-  Bounds bounds;
-  for (const Vec3& vertex : model.solid.vertices) bounds.extend(vertex);
-  return sizesText(bounds.sizes());
+/// `sizes` are those of the scene's models.
+ShapeFacts factsOf(const Shape& shape, const std::vector<Vec3>& sizes) {
+  struct {
+    const std::vector<Vec3>& sizes;
+    ShapeFacts operator()(const Sphere& sphere) const { return {"sphere", Vec3::Constant(2 * sphere.radius)}; }
+    ShapeFacts operator()(const Box& box) const { return {"box", box.size}; }
+    ShapeFacts operator()(const Cylinder& cylinder) const {
+      return {"cylinder", Vec3(2 * cylinder.radius, cylinder.length, 2 * cylinder.radius)};
+    }
+    ShapeFacts operator()(const Capsule& capsule) const {
+      return {"capsule", Vec3(2 * capsule.radius, capsule.length + 2 * capsule.radius, 2 * capsule.radius)};
+    }
+    ShapeFacts operator()(const Plane&) const { return {"plane", std::nullopt}; }
+    ShapeFacts operator()(const ModelShape& model) const {
+      return {"mesh", sizes[static_cast<std::size_t>(model.model)]};
+    }
+  } facts{sizes};
+  return std::visit(facts, shape);
 }
 
-/// `models` are the sizes of the scene's.
-std::string textOf(const Body& body, const std::vector<std::string>& models) {
-  const std::string mass = body.motion == Motion::fixed    ? "static"
-                           : body.motion == Motion::driven ? "driven"
-                                                           : fmt::format("{:.4g} kg", body.massProperties.mass);
-  const std::string shape = std::visit(
-      [&](const auto& shape) -> std::string {
-        using Kind = std::decay_t<decltype(shape)>;
-        if constexpr (std::is_same_v<Kind, Sphere>) {
-          return fmt::format("sphere, {:.4g} m", 2 * shape.radius);
-        } else if constexpr (std::is_same_v<Kind, Box>) {
-          return "box, " + sizesText(shape.size);
-        } else if constexpr (std::is_same_v<Kind, Cylinder>) {
-          return "cylinder, " + sizesText({2 * shape.radius, shape.length, 2 * shape.radius});
-        } else if constexpr (std::is_same_v<Kind, Capsule>) {
-          return "capsule, " + sizesText({2 * shape.radius, shape.length + 2 * shape.radius, 2 * shape.radius});
-        } else if constexpr (std::is_same_v<Kind, Plane>) {
-          return "plane";
-        } else {
-          return "mesh, " + models[static_cast<std::size_t>(shape.model)];
-        }
-      },
-      body.shape);
-  return shape + ", " + mass;
+std::string textOf(const Body& body, const ShapeFacts& shape) {
+  std::string text = shape.kind;
+  if (std::holds_alternative<Sphere>(body.shape))
+    text += fmt::format(", {:.4g} m", shape.size->x());
+  else if (shape.size)
+    text += ", " + sizesText(*shape.size);
+  const bool isDynamic = body.motion == Motion::dynamic;
+  return text +
+         (isDynamic ? fmt::format(", {:.4g} kg", body.massProperties.mass) : fmt::format(", {}", nameOf(body.motion)));
 }
 
 }  // namespace
 
+const char* nameOf(Motion motion) {
+  return motion == Motion::fixed ? "static" : motion == Motion::driven ? "driven" : "dynamic";
+}
+
+std::vector<ShapeFacts> shapesOf(const Scene& scene) {
+  std::vector<Vec3> sizes;
+  for (const Model& model : scene.models) {
+    Bounds bounds;
+    for (const Vec3& vertex : model.solid.vertices) bounds.extend(vertex);
+    sizes.emplace_back(bounds.sizes());
+  }
+  std::vector<ShapeFacts> shapes;
+  for (const Body& body : scene.bodies) shapes.push_back(factsOf(body.shape, sizes));
+  return shapes;
+}
+
 std::vector<std::string> describeBodies(const Scene& scene) {
-  std::vector<std::string> models, lines;
-  for (const Model& model : scene.models) models.push_back(sizesText(model));
+  std::vector<std::string> lines;
+  const std::vector<ShapeFacts> shapes = shapesOf(scene);
   const std::size_t count = scene.bodies.size();
-  std::string text = count > 0 ? textOf(scene.bodies[0], models) : "", nextText;
+  std::string text = count > 0 ? textOf(scene.bodies[0], shapes[0]) : "", nextText;
   for (std::size_t i = 0, next = 1; i < count; i = next++) {
     if (lines.size() == kMaxLines) {
       lines.push_back(fmt::format("and {} bodies more", count - i));
       break;
     }
-    for (; next < count && (nextText = textOf(scene.bodies[next], models)) == text; ++next) {
+    for (; next < count && (nextText = textOf(scene.bodies[next], shapes[next])) == text; ++next) {
     }
     const std::string others = next - i > 1 ? fmt::format(" and {} more, each", next - i - 1) : "";
     lines.push_back(fmt::format("{}{}: {}", printableLine(scene.bodies[i].name), others, text));

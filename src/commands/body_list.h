@@ -1,11 +1,24 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "scene/scene.h"
 
 namespace cradle {
+
+/// As scene files have it.
+const char* nameOf(Motion motion);
+
+/// What the shape of a body is called, and its size (m) along the axes of the body's frame; a plane has none.
+struct ShapeFacts {
+  const char* kind;
+  std::optional<Vec3> size;
+};
+
+/// Of each body.
+std::vector<ShapeFacts> shapesOf(const Scene& scene);
 
 /// A line for each body of a scene with its shape, its size along the axes of its frame and its mass. Bodies that are
 /// alike in all of that, one after the other, share a line; many lines are cut short.

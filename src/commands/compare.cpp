@@ -8,9 +8,11 @@
 #include <iterator>
 #include <vector>
 
+#include "commands/comparison_texts.h"
 #include "core/console.h"
 #include "core/error.h"
 #include "core/output_path.h"
+#include "core/part_file.h"
 #include "core/printable.h"
 #include "core/read_file.h"
 #include "image/comparison_report.h"
@@ -98,84 +100,61 @@ void comparePair(ComparedPicture& pair, const ImageLimits& limits) {
     pair.comparison = compareFiles(pair.expectedPath, pair.actualPath, limits);
 }
 
-/// As one word for a shell, whatever is in it.
-std::string quotedForShell(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
-void printAcceptance(const std::vector<ComparedPicture>& pictures, const std::string& expected) {
-  show("To accept what you have looked at and found right:\n");
-  for (const ComparedPicture& picture : pictures) {
-    if (picture.comparison.passes) continue;
-    if (picture.actualPath.empty())
-      show("  rm {}\n", quotedForShell(picture.expectedPath));
-    else
-      show("  cp {} {}\n", quotedForShell(picture.actualPath),
-           quotedForShell(picture.expectedPath.empty() ? expected : picture.expectedPath));
-  }
-}
-
 /// A slip of the command line does not cost a file of another kind.
-void requireReportPlace(const std::string& path) {
-  requireWritableFile(path);
+void requirePlace(const std::optional<std::string>& path, bool (*isOurs)(const std::string& path), const char* kind) {
+  if (!path) return;
+  requireWritableFile(*path);
   std::error_code failed;
-  const auto size = std::filesystem::file_size(path, failed);
-  if (failed || size == 0 || isComparisonReport(path)) return;
-  throw Error(ErrorKind::output, path, "is there, and is no report of pictures: it is not replaced; give another name");
+  const auto size = fs::file_size(*path, failed);
+  if (failed || size == 0 || isOurs(*path)) return;
+  throw Error(ErrorKind::output, *path,
+              fmt::format("is there, and is no {}: it is not replaced; give another name", kind));
 }
 
-/// All pictures of both, compared; the outcome is printed, and shown in the report if one is asked for.
-bool comparePictures(std::vector<ComparedPicture> pictures, const std::string& expected,
-                     const CompareOptions& options) {
-  const ImageLimits limits = parseLimits(options);
-  if (options.report) requireReportPlace(*options.report);
-  long different = 0;
-  for (ComparedPicture& picture : pictures) {
-    comparePair(picture, limits);
-    if (!picture.comparison.isSame)
-      show("{}: {}\n", printableLine(picture.actualPath.empty() ? picture.name : picture.actualPath),
-           picture.comparison.sentence);
-    different += !picture.comparison.passes;
-  }
-  show("{} of {} pictures differ\n", different, pictures.size());
-  if (options.report) {
-    writeComparisonReport(pictures, limits, *options.report);
-    show("{}\n", printableLine(*options.report));
-  }
-  if (different > 0) printAcceptance(pictures, expected);
-  return different == 0;
+PictureComparison comparePictures(std::vector<ComparedPicture> pictures, const CompareOptions& options) {
+  PictureComparison found{std::move(pictures), parseLimits(options)};
+  for (ComparedPicture& picture : found.pictures) comparePair(picture, found.limits);
+  return found;
 }
 
-bool compareTrajectoryFiles(const std::string& expected, const std::string& actual, double tolerance) {
-  if (!(tolerance >= 0))
-    throw Error(ErrorKind::usage, "--tolerance", fmt::format("found {}; allowed are numbers >= 0", tolerance));
-  const TrajectoryComparison comparison =
-      compareTrajectories(TrajectoryReader(expected), TrajectoryReader(actual), tolerance);
-  show("{}\n", comparison.describe());
-  return comparison.equal;
+TrajectoryComparison compareTrajectoryFiles(const std::string& expected, const std::string& actual,
+                                            const CompareOptions& options) {
+  if (options.report) throw Error(ErrorKind::usage, "--report", "shows pictures; these are trajectories");
+  if (!(options.tolerance >= 0))
+    throw Error(ErrorKind::usage, "--tolerance", fmt::format("found {}; allowed are numbers >= 0", options.tolerance));
+  return compareTrajectories(TrajectoryReader(expected), TrajectoryReader(actual), options.tolerance);
 }
 
-bool compareAny(const std::string& expected, const std::string& actual, const CompareOptions& options) {
+ComparedResults compareAny(const std::string& expected, const std::string& actual, const CompareOptions& options) {
   for (const std::string& path : {expected, actual}) requireFileOrFolder(path, ErrorKind::usage);
   if (fs::is_directory(expected) != fs::is_directory(actual))
     throw Error(ErrorKind::usage, actual, "a folder can only be compared with a folder");
-  if (fs::is_directory(expected)) return comparePictures(pairPictures(expected, actual), expected, options);
-  if (isDatabaseFile(expected) || isDatabaseFile(actual)) {
-    if (options.report) throw Error(ErrorKind::usage, "--report", "shows pictures; these are trajectories");
-    return compareTrajectoryFiles(expected, actual, options.tolerance);
-  }
+  if (fs::is_directory(expected)) return {expected, actual, comparePictures(pairPictures(expected, actual), options)};
+  if (isDatabaseFile(expected) || isDatabaseFile(actual))
+    return {expected, actual, compareTrajectoryFiles(expected, actual, options)};
   const std::string name = fs::path(actual).filename().string();
-  return comparePictures({{name, expected, actual, {}}}, expected, options);
+  return {expected, actual, comparePictures({{name, expected, actual, {}}}, options)};
 }
 
 }  // namespace
 
 void compareResults(const std::string& expected, const std::string& actual, const CompareOptions& options) {
-  if (!compareAny(expected, actual, options))
-    throw Error(ErrorKind::different, "", fmt::format("{} differs from {}", actual, expected));
-  show("the same\n");
+  requirePlace(options.report, isComparisonReport, "report of pictures");
+  requirePlace(options.junit, isJunitReport, "report of a comparison");
+  const ComparedResults results = compareAny(expected, actual, options);
+  if (options.report) {
+    const auto& found = std::get<PictureComparison>(results.found);
+    writeComparisonReport(found.pictures, found.limits, *options.report);
+  }
+  if (options.junit) writeWholeFile(*options.junit, junitOf(results));
+  if (options.asJson) {
+    showText(stdout, jsonOf(results));
+  } else {
+    showText(stdout, describe(results));
+    if (options.report) show("{} shows them\n", printableLine(*options.report));
+    if (results.passes()) show("the same\n");
+  }
+  if (!results.passes()) throw Error(ErrorKind::different, "", fmt::format("{} differs from {}", actual, expected));
 }
 
 }  // namespace cradle

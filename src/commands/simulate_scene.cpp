@@ -10,7 +10,6 @@
 #include <span>
 #include <vector>
 
-#include "commands/body_list.h"
 #include "commands/run_cameras.h"
 #include "commands/warnings.h"
 #include "core/console.h"
@@ -32,7 +31,6 @@
 #include "simulate/assembly.h"
 #include "simulate/run_record.h"
 #include "simulate/simulate.h"
-#include "simulate/start_overlaps.h"
 #include "simulate/strict_watch.h"
 #include "simulate/world.h"
 #include "study/achieved_accuracy.h"
@@ -100,24 +98,6 @@ void requireNoOtherFile(const std::string& path) {
   const auto size = std::filesystem::file_size(path, failed);
   if (failed || size == 0 || isTrajectoryFile(path)) return;
   throw Error(ErrorKind::output, path, "is there, and is no trajectory: it is not replaced; give another name");
-}
-
-std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
-/// ", 10 rods, 1 push": what there is of each kind.
-std::string linksOf(const Scene& scene) {
-  std::string text;
-  const auto add = [&](std::size_t count, const std::string& one, const std::string& many) {
-    if (count > 0) text += ", " + counted(count, one, many);
-  };
-  forEachKindOfLink(scene, [&](const auto& links) {
-    const std::string noun = LinkOf<decltype(links)>::kNoun;
-    add(links.size(), noun, noun + "s");
-  });
-  add(scene.pushes.size(), "push", "pushes");
-  return text;
 }
 
 void checkAccuracy(const Scene& scene, const std::string& output, bool prints, bool quiet) {
@@ -336,25 +316,6 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
     tellWhatIsKept(ErrorKind::limit, "out of memory");
   }
   if (options.checksAccuracy || options.findsHorizon) checkAccuracy(scene, output, options.checksAccuracy, quiet);
-}
-
-void checkScene(const std::string& scenePath, const SceneOptions& options) {
-  const Scene scene = loadSceneAndWarn(scenePath, options);
-  refuseUnsupported(scene);
-  std::vector<Assembly> islands;
-  // Bodies alone have nothing to be checked, and may be a million.
-  for (const IslandPlan& island : planOf(scene).islands)
-    if (!island.touching.empty() || !island.links.empty()) islands.push_back(assemble(scene, island));
-  correctStartPenetrations(scene, islands);
-  std::vector<std::string> warnings;
-  for (const Assembly& assembly : islands)
-    warnings.insert(warnings.end(), assembly.warnings.begin(), assembly.warnings.end());
-  warnOfAll(warnings);
-  const std::size_t driven = countBodies(scene, Motion::driven);
-  show("{}: \"{}\" is in order: {} ({} dynamic{}){}; {} s, {} frames\n", printableLine(scenePath),
-       printableLine(scene.name), counted(scene.bodies.size(), "body", "bodies"), countBodies(scene, Motion::dynamic),
-       driven > 0 ? fmt::format(", {} driven", driven) : "", linksOf(scene), scene.duration, lastFrame(scene) + 1);
-  for (const std::string& line : describeBodies(scene)) show("  {}\n", line);
 }
 
 }  // namespace cradle

@@ -33,9 +33,6 @@ struct SimulateOptions {
 /// kept.
 void simulateScene(const std::string& scenePath, const std::string& output, const SimulateOptions& options, bool quiet);
 
-/// `cradle check SCENE`: loads the scene and its meshes and says what is in it.
-void checkScene(const std::string& scenePath, const SceneOptions& options);
-
 /// A scene file with its warnings printed to stderr, options applied.
 Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options);
 

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string_view>
 
+#include "core/markup.h"
 #include "core/part_file.h"
-#include "core/printable.h"
 #include "image/png.h"
 
 namespace cradle {
@@ -48,41 +48,6 @@ for (const section of document.querySelectorAll("section")) {
 </script></body></html>
 )";
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : printableLine(text)) switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  return result;
-}
-
-/// RFC 4648, section 4.
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
 bool isShown(const ComparedPicture& picture) {
   return !picture.comparison.isSame && picture.comparison.differingPixels > 0;
 }
@@ -108,7 +73,7 @@ std::string stripOf(const std::vector<ComparedPicture>& pictures, const std::vec
   for (const ComparedPicture& picture : pictures) {
     const char* const kind = picture.comparison.isSame ? "same" : picture.comparison.passes ? "passes" : "fails";
     const bool hasSection = std::binary_search(shown.begin(), shown.end(), &picture);
-    const std::string name = escaped(picture.name);
+    const std::string name = escapedMarkup(picture.name);
     text += hasSection ? fmt::format("<a href=\"#{0}\" class=\"{1}\" title=\"{0}\"></a>", name, kind)
                        : fmt::format("<i class=\"{1}\" title=\"{0}\"></i>", name, kind);
   }
@@ -124,11 +89,11 @@ std::string tableOf(const std::vector<ComparedPicture>& pictures, const ImageLim
     const ImageComparison& found = picture.comparison;
     if (found.isSame) continue;
     text += fmt::format("<tr class=\"{}\"><td>{}</td><td>{}</td>", found.passes ? "passes" : "fails",
-                        escaped(picture.name), found.passes ? "passes" : "fails");
+                        escapedMarkup(picture.name), found.passes ? "passes" : "fails");
     text += found.differingPixels > 0
                 ? fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", found.differingPixels,
                               found.visiblePixels, found.strikingPixels, found.largestDifference)
-                : fmt::format("<td colspan=\"4\">{}</td></tr>\n", escaped(found.sentence));
+                : fmt::format("<td colspan=\"4\">{}</td></tr>\n", escapedMarkup(found.sentence));
   }
   return text + "</table>\n";
 }
@@ -144,12 +109,12 @@ std::string sectionOf(const ComparedPicture& picture) {
     return fmt::format(
         "<section id=\"{0}\"><h2>{0}</h2><p>{1}</p><p>{2} x {3} pixels are too many to be shown here</p>"
         "</section>\n",
-        escaped(picture.name), escaped(picture.comparison.sentence), size.width, size.height);
+        escapedMarkup(picture.name), escapedMarkup(picture.comparison.sentence), size.width, size.height);
   const Image expected = readPng(picture.expectedPath), actual = readPng(picture.actualPath);
   const PixelBox& box = picture.comparison.where;
   const auto percent = [](int part, int whole) { return 100.0 * part / whole; };
-  std::string text = fmt::format("<section id=\"{0}\"><h2>{0}</h2><p>{1}</p>\n", escaped(picture.name),
-                                 escaped(picture.comparison.sentence));
+  std::string text = fmt::format("<section id=\"{0}\"><h2>{0}</h2><p>{1}</p>\n", escapedMarkup(picture.name),
+                                 escapedMarkup(picture.comparison.sentence));
   text += fmt::format(
       "<p>columns {} to {}, rows {} to {} from the top left; a click on the picture swaps</p>\n<p><button>expected"
       "</button><button>actual</button><button>difference, times {:.3g}</button></p>\n<div class=\"view\">",

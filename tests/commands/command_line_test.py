@@ -4,6 +4,7 @@
     command_line_test.py PROGRAM SOURCE_FOLDER
 """
 import ast, base64, contextlib, csv, json, math, os, pty, re, resource, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
+from xml.etree import ElementTree
 
 PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 BALL = os.path.join(SOURCE, "assets", "ball.3ds")
@@ -1436,7 +1437,7 @@ class Pictures(InTemporaryFolder):
         os.replace(self.path("b/frame_000000.png"), self.path("b/frame_000001.png"))
         result = cradle("compare", self.path("a"), self.path("b"), "--report", self.path("r.html"))
         self.assertEqual(result.returncode, 9)
-        self.assertIn(f"cp '{self.path('b/frame_000001.png')}' '{self.path('a/frame_000001.png')}'", result.stdout)
+        self.assertIn(f"cp '{self.path('b/frame_000001.png')}' '{self.path('a')}'\n", result.stdout)
         page = content(self.path("r.html")).decode()
         self.assertIn("3 of 3 pictures fail", page)
         self.assertNotIn("http", page)
@@ -1444,6 +1445,79 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(len(pictures), 3)
         self.assertEqual(pictures[0], content(self.path("a/frame_000001.png")))
         self.assertEqual(pictures[1], content(self.path("b/frame_000001.png")))
+
+    def test_comparisons_for_continuous_integration(self):
+        path = self.write("s.json", scene(duration=0.4))
+        cradle("render", path, "-o", self.path("a"), "--frames", "0:15")
+        shutil.copytree(self.path("a"), self.path("b"))
+        for number in range(12):
+            shutil.copy(self.path("a/frame_000014.png"), self.path(f"b/frame_{number:06}.png"))
+        os.remove(self.path("b/frame_000012.png"))
+        os.rename(self.path("b/frame_000013.png"), self.path("b/<frame>&.png"))
+        arguments = ("compare", self.path("a"), self.path("b"), "--junit", self.path("r.xml"))
+        result = cradle(*arguments)
+        self.assertEqual(result.returncode, 9)
+        lines = result.stdout.splitlines()
+        self.assertEqual(lines[-4:], ["and 5 more", "15 of 16 pictures differ; 2 missing; 1 not expected",
+                                      "To accept what you have looked at and found right:",
+                                      f"  cp '{self.path('b')}'/*.png '{self.path('a')}'"])
+        self.assertEqual(len(lines), 14)
+        suites = ElementTree.parse(self.path("r.xml")).getroot()
+        (suite,) = suites
+        self.assertEqual((suites.tag, suite.get("tests"), suite.get("failures")), ("testsuites", "16", "15"))
+        failures = {test.get("name"): test.find("failure") for test in suite}
+        self.assertEqual([name for name, failure in failures.items() if failure is None], ["frame_000014.png"])
+        self.assertEqual(failures["frame_000012.png"].get("message"), "missing")
+        self.assertEqual(failures["<frame>&.png"].get("message"), "not expected")
+
+        document = json.loads(cradle(*arguments, "--json").stdout)
+        self.assertEqual((document["passes"], len(document["pictures"])), (False, 16))
+        pictures = {picture["name"]: picture for picture in document["pictures"]}
+        self.assertIsNone(pictures["frame_000012.png"]["actual"])
+        self.assertGreater(pictures["frame_000000.png"]["visiblePixels"], 0)
+        self.assertTrue(pictures["frame_000014.png"]["same"])
+
+        os.mkdir(self.path("none"))
+        result = cradle("compare", self.path("a"), self.path("none"), "--junit", self.path("r.xml"))
+        self.assertEqual(result.returncode, 9)
+        self.assertEqual(result.stdout, f"{self.path('none')}: nothing was drawn, 15 pictures are expected\n")
+        (suite,) = ElementTree.parse(self.path("r.xml")).getroot()
+        self.assertEqual(suite.get("failures"), "15")
+        self.refuses(5, ["s.json", "no report of a comparison"], "compare", self.path("a"), self.path("b"), "--junit", path)
+
+    def test_comparisons_of_trajectories_for_continuous_integration(self):
+        for name, speed in (("a", 1), ("b", 1.25)):
+            body = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "linearVelocity": [speed, 0, 0]}
+            cradle("simulate", self.write(name + ".json", scene(bodies=[body], duration=0.5)), "-o", self.path(name + ".sqlite"))
+        a, b, report = self.path("a.sqlite"), self.path("b.sqlite"), self.path("r.xml")
+        result = cradle("compare", a, b, "--json", "--junit", report)
+        self.assertEqual(result.returncode, 9)
+        document = json.loads(result.stdout)
+        (body,) = document["bodies"]
+        self.assertAlmostEqual(body["position"], 0.125 / 1.5, places=12)  # |x - x_ref| / (1 + |x_ref|), largest at the end
+        self.assertAlmostEqual(body["linearVelocity"], 0.25 / 2, places=12)
+        self.assertEqual(document["worst"]["quantity"], "linear velocity")
+        self.assertEqual(ElementTree.parse(report).getroot().find("testsuite").get("failures"), "1")
+        same = json.loads(cradle("compare", a, a, "--json", "--junit", report).stdout)
+        self.assertTrue(same["passes"] and same["sameStateHash"])
+        self.assertEqual(ElementTree.parse(report).getroot().find("testsuite").get("failures"), "0")
+
+    def test_check_for_programs(self):
+        plate = {"name": "plate", "shape": {"box": {"size": [2, 1, 4]}}, "mass": 12}
+        document = json.loads(cradle("check", self.write("a.json", scene(bodies=[plate])), "--json").stdout)
+        (body,) = document["bodies"]
+        self.assertTrue(document["inOrder"])
+        self.assertEqual((body["motion"], body["shape"], body["size"], body["mass"]), ("dynamic", "box", [2, 1, 4], 12))
+        for row, moment in zip(range(3), (17, 20, 5)):  # m (b^2 + c^2) / 12
+            self.assertAlmostEqual(body["inertiaTensor"][row][row], moment, places=12)
+        path = self.write("b.json", scene(bodies=[{**plate, "mass": -1}, {**plate, "shape": {"cube": {}}}]))
+        result = self.refuses(3, ["/bodies/0/mass", "/bodies/1/name", "/bodies/1/shape"], "check", path, "--json")
+        faults = json.loads(result.stdout)["faults"]
+        lines = [f"{path}:{fault['line']}:{fault['column']} {fault['pointer']}: {fault['message']}" for fault in faults]
+        self.assertEqual(result.stderr.splitlines(), lines)
+        missing = cradle("check", self.path("nowhere.json"), "--json")
+        self.assertEqual(missing.returncode, 3)
+        self.assertIn("nowhere.json", json.loads(missing.stdout)["faults"][0]["message"])
 
     def test_thresholds_of_pictures(self):
         path = self.write("s.json", scene(duration=0.05))

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "commands/simulate_scene.h"
+
+namespace cradle {
+
+/// `cradle check SCENE`: loads the scene and its meshes and says what is in it; as JSON with its warnings, and where it
+/// is not in order with its faults. Throws as loading does.
+void checkScene(const std::string& scenePath, const SceneOptions& options, bool asJson);
+
+}  // namespace cradle
