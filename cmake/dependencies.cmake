@@ -20,6 +20,8 @@ find_library(GLEW NAMES libGLEW.a REQUIRED)
 find_path(STB_INCLUDE stb/stb_image_write.h REQUIRED)
 find_package(Qhull 8 REQUIRED)
 find_library(LIBSECCOMP seccomp REQUIRED)
+find_file(THREE_JS three.min.js PATHS /usr/share/javascript/three REQUIRED)  # libjs-three, release 111
+find_file(ORBIT_CONTROLS_JS OrbitControls.js PATHS /usr/share/javascript/three/examples/js/controls REQUIRED)
 find_file(FONT DejaVuSans.ttf PATHS /usr/share/fonts/truetype/dejavu REQUIRED)  # fonts-dejavu-core
 
 if(CRADLE_PEERS)

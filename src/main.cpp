@@ -52,12 +52,13 @@ struct CommandLine {
   SimulateOptions simulation;
   PictureOptions pictures;
   CompareOptions comparison;
+  ExportOptions exported;
   PlotOptions plot;
   SampleOptions sampling;
   SubmitOptions submission;
   InspectOptions inspection;
   long frame = 0;
-  bool json = false, quiet = false, sideBySide = false, exportsContacts = false;
+  bool json = false, quiet = false, sideBySide = false;
   std::function<void()> command;
 };
 
@@ -341,16 +342,21 @@ void addQuestions(CLI::App& app, CommandLine& line) {
   compare->add_option("--tolerance", line.comparison.tolerance, "for trajectories: max |x-x_ref|/(1+|x_ref|)")
       ->capture_default_str();
 
-  auto* exported = addCommand(app, line, "export", "Write a trajectory as a table, or as a model that moves",
-                              "cradle export cradle.sqlite -o cradle.csv\n  cradle export cradle.sqlite -o cradle.glb",
-                              [&] { exportTrajectory(line.input, line.output, line.exportsContacts, line.quiet); });
+  auto* exported =
+      addCommand(app, line, "export", "Write a trajectory as a table, a model that moves, or a page that plays it",
+                 "cradle export cradle.sqlite -o cradle.csv\n  cradle export cradle.sqlite -o cradle.glb\n"
+                 "  cradle export cradle.sqlite -o cradle.html",
+                 [&] { exportTrajectory(line.input, line.output, line.exported, line.quiet); });
   exported->add_option("trajectory", line.input, "trajectory file")->required();
   addOutput(
       exported, line,
       ".csv: a table of states; .glb: glTF 2.0, moving in simulated time, with camera and lights, joints with their "
-      "bodies, springs, rods and ropes drawn straight, without pushes");
-  exported->add_flag("--contacts", line.exportsContacts,
+      "bodies, springs, rods and ropes drawn straight, without pushes; .html: a page to walk around in, with curves, "
+      "events and forces, which needs nothing else");
+  exported->add_flag("--contacts", line.exported.ofContacts,
                      "the .csv is of contacts that last, with their forces, in place of states");
+  exported->add_option("--with", line.exported.other,
+                       "another trajectory of the same bodies, which the .html shows over the first one, in red");
 }
 
 /// Says what was found where CLI11 would say only that it could not be converted, or take it for a value that is not

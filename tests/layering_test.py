@@ -30,11 +30,11 @@ MAY_INCLUDE = {
 LIBRARY_UNITS = {
     "assimp/": ["mesh"],
     "libqhull_r/": ["mesh/convex_hull"],
-    "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file", "commands/plan_scene", "commands/comparison_texts", "commands/check_scene", "truth/truth_json", "verify/truth_documents"],
+    "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file", "commands/plan_scene", "commands/comparison_texts", "commands/player_document", "commands/check_scene", "truth/truth_json", "verify/truth_documents"],
     "CLI/": ["main.cpp"],
     "sqlite3.h": ["trajectory/database"],
     "stb/": ["image/png", "image/font", "mesh/texture"],
-    "libdeflate.h": ["image/png"],
+    "libdeflate.h": ["image/png", "commands/packed_numbers"],
     "archive": ["commands/tar_shard"],
     "OpenEXR/": ["truth/pass_files", "verify/exr_reader"],
     "GL/": ["render"],

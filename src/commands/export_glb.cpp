@@ -24,9 +24,6 @@ namespace cradle {
 namespace {
 
 constexpr double kPlaneOfScene = 4;  // width of a plane, in diagonals of the box around all bodies
-// Links have no thickness in physics: theirs is a share of a typical body's radius, and of the scene's diagonal at
-// least.
-constexpr double kLinkOfBody = 0.055, kLinkOfScene = 0.002;
 constexpr int kLinkFacets = 16;
 constexpr double kRounding = 1e-7;  // of a body's size: a centre of mass so near to the origin is there, in 32 bits
 
@@ -84,7 +81,6 @@ class GlbExport {
   Track addTrack(int node);
   void setPose(std::size_t frame, const Vec3& position, const Quat& orientation, Track& track);
   void setLink(std::size_t frame, const std::vector<RigidTransform>& places, Link& link);
-  double linkRadius() const;
 
   TrajectorySource& source_;
   const TrajectoryReader& reader_;
@@ -150,15 +146,6 @@ void GlbExport::addBodies(const std::vector<RigidTransform>& places) {
       node = file_.addNode(body.name + " shape", {Quat::Identity(), -center}, node);
     file_.setMesh(node, meshes_.ofBody(i));
   }
-}
-
-double GlbExport::linkRadius() const {
-  std::vector<double> radii;
-  for (const Body& body : scene_.bodies)
-    if (body.motion == Motion::dynamic) radii.push_back(localBounds(scene_, body).sizes().minCoeff() / 2);
-  const auto middle = radii.begin() + std::ssize(radii) / 2;
-  std::nth_element(radii.begin(), middle, radii.end());
-  return std::max(radii.empty() ? 0 : kLinkOfBody * *middle, kLinkOfScene * bounds_.diagonal().norm());
 }
 
 template <typename Links>
@@ -258,7 +245,7 @@ void GlbExport::build(bool quiet) {
   requireFits();
   addTimes();
   addBodies(placeBodies(scene_, source_.drawnFrameAt(0)));
-  linkRadius_ = linkRadius();
+  linkRadius_ = linkRadius(scene_, bounds_);
   addLinks(scene_.springs, "spring", kDarkSteel);
   addLinks(scene_.rods, "rod", kSteel);
   addLinks(scene_.ropes, "rope", kHemp);

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "commands/export_glb.h"
+#include "commands/export_html.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
@@ -23,19 +24,33 @@ void exportTable(const TrajectoryReader& reader, const std::string& path, bool o
   });
 }
 
+void exportPage(const std::string& trajectory, const std::optional<std::string>& other, const std::string& output,
+                bool quiet) {
+  std::optional<TrajectoryReader> beside;
+  if (other) beside.emplace(*other);
+  exportHtml(TrajectoryReader(trajectory), beside, output, quiet);
+}
+
 }  // namespace
 
-void exportTrajectory(const std::string& trajectory, const std::string& output, bool exportsContacts, bool quiet) {
+void exportTrajectory(const std::string& trajectory, const std::string& output, const ExportOptions& options,
+                      bool quiet) {
   requireOtherFile(output, trajectory);
+  if (options.other) requireOtherFile(output, *options.other);
   const std::filesystem::path ending = std::filesystem::path(output).extension();
-  if (exportsContacts && ending != ".csv")
+  if (options.ofContacts && ending != ".csv")
     throw Error(ErrorKind::usage, output, "is no table: contacts are exported as FILE.csv");
+  if (options.other && ending != ".html")
+    throw Error(ErrorKind::usage, output, "shows one trajectory: another one over it is exported as FILE.html");
   if (ending == ".csv")
-    exportTable(TrajectoryReader(trajectory), output, exportsContacts, quiet);
+    exportTable(TrajectoryReader(trajectory), output, options.ofContacts, quiet);
   else if (ending == ".glb")
     exportGlb(TrajectoryReader(trajectory), output, quiet);
+  else if (ending == ".html")
+    exportPage(trajectory, options.other, output, quiet);
   else
-    throw Error(ErrorKind::usage, output, "cannot tell the format from the name; allowed are FILE.csv and FILE.glb");
+    throw Error(ErrorKind::usage, output,
+                "cannot tell the format from the name; allowed are FILE.csv, FILE.glb and FILE.html");
 }
 
 }  // namespace cradle

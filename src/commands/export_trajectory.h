@@ -1,11 +1,17 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace cradle {
 
-/// `cradle export TRAJECTORY -o FILE.csv|FILE.glb [--contacts]`: the ending says which; a table is of lasting contacts
-/// if `exportsContacts`, else of states.
-void exportTrajectory(const std::string& trajectory, const std::string& output, bool exportsContacts, bool quiet);
+struct ExportOptions {
+  bool ofContacts = false;           // a table of contacts that last, in place of states
+  std::optional<std::string> other;  // a trajectory that a page shows over the first one
+};
+
+/// `cradle export TRAJECTORY -o FILE.csv|FILE.glb|FILE.html`: the ending says which.
+void exportTrajectory(const std::string& trajectory, const std::string& output, const ExportOptions& options,
+                      bool quiet);
 
 }  // namespace cradle
