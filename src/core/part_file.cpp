@@ -16,8 +16,11 @@ constexpr std::size_t kMaxWaiting = 1 << 16;  // bytes
 }  // namespace
 
 void PartFile::write(std::string_view bytes) {
-  waiting_ += bytes;
-  if (waiting_.size() > kMaxWaiting) flush();
+  if (waiting_.size() + bytes.size() > kMaxWaiting) flush();
+  if (bytes.size() > kMaxWaiting)
+    put(bytes);  // as it stands, without a copy
+  else
+    waiting_ += bytes;
 }
 
 void PartFile::complete() {
@@ -26,13 +29,17 @@ void PartFile::complete() {
 }
 
 void PartFile::flush() {
-  for (std::size_t written = 0; written < waiting_.size();) {
-    const ssize_t length = ::write(lock_.file(), waiting_.data() + written, waiting_.size() - written);
+  put(waiting_);
+  waiting_.clear();
+}
+
+void PartFile::put(std::string_view bytes) {
+  for (std::size_t written = 0; written < bytes.size();) {
+    const ssize_t length = ::write(lock_.file(), bytes.data() + written, bytes.size() - written);
     if (length < 0 && errno == EINTR) continue;
     if (length < 0) throw Error(ErrorKind::output, path_, fmt::format("cannot be written: {}", std::strerror(errno)));
     written += static_cast<std::size_t>(length);
   }
-  waiting_.clear();
 }
 
 void writeWholeFile(const std::string& path, std::string_view bytes) {

@@ -19,6 +19,7 @@ class PartFile {
 
  private:
   void flush();
+  void put(std::string_view bytes);
 
   std::string path_, waiting_;
   PartLock lock_;

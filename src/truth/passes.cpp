@@ -80,6 +80,11 @@ class PointMotion {
  public:
   PointMotion(const FrameRays& frame, const FrameRays& other);
 
+  /// Whether it is where it was, and so is the camera.
+  bool isStill(const SeenPoint& seen) const {
+    return isCameraStill_ && (seen.isSky() || isStill_[static_cast<std::size_t>(seen.surface)]);
+  }
+
   /// Where a point (camera's coordinates) is in the other frame, and its camera; of the sky, a direction.
   Vec3 moved(const SeenPoint& seen, const Vec3& point) const {
     if (seen.isSky()) return sky_ * point;
@@ -96,6 +101,8 @@ class PointMotion {
   Mat3 sky_;
   std::vector<CameraMap> maps_;  // of each surface
   std::vector<char> bends_;      // of each surface: a tube
+  std::vector<char> isStill_;    // of each surface
+  bool isCameraStill_;
 };
 
 PointMotion::PointMotion(const FrameRays& frame, const FrameRays& other)
@@ -103,18 +110,23 @@ PointMotion::PointMotion(const FrameRays& frame, const FrameRays& other)
       other_(other),
       firstLink_(bodySurfaces(frame.surfaces())),
       otherFirstLink_(bodySurfaces(other.surfaces())),
-      sky_(other.pinhole().worldFromCamera().transpose() * frame.pinhole().worldFromCamera()) {
+      sky_(other.pinhole().worldFromCamera().transpose() * frame.pinhole().worldFromCamera()),
+      isCameraStill_(frame.pinhole().position() == other.pinhole().position() &&
+                     frame.pinhole().worldFromCamera() == other.pinhole().worldFromCamera()) {
   for (std::size_t i = 0; i < frame.surfaces().size(); ++i) {
     const SeenSurface& surface = frame.surfaces()[i];
     const bool isLink = i >= firstLink_;
     bends_.push_back(isLink && std::holds_alternative<WorldTriangles>(surface.shape));
+    isStill_.push_back(0);
     if (bends_.back()) {
       maps_.emplace_back();
     } else if (isLink) {
       maps_.push_back(mapOfLink(surface, other.surfaces()[inOther(i)], frame.pinhole(), other.pinhole()));
     } else {
       const std::size_t body = static_cast<std::size_t>(surface.body);
-      const RigidTransform motion = other.worldFromBody()[body] * frame.worldFromBody()[body].inverse();
+      const RigidTransform &now = frame.worldFromBody()[body], &then = other.worldFromBody()[body];
+      isStill_.back() = now.translation == then.translation && now.rotation.coeffs() == then.rotation.coeffs();
+      const RigidTransform motion = then * now.inverse();
       maps_.push_back(mapOf(motion, frame.pinhole(), other.pinhole()));
     }
   }
@@ -132,6 +144,11 @@ Vec3 PointMotion::movedOnTube(const SeenPoint& seen, const Vec3& point) const {
   return other_.pinhole().inCamera(moved);
 }
 
+/// Whether what is seen at a depth (m) stands behind what is seen first there.
+bool isCovered(const SeenPoint& seen, double depth, const SeenPoint& first) {
+  return seen.isSky() ? !first.isSky() : first.depth < depth * (1 - kSameDepth);
+}
+
 /// Whether a point (camera's coordinates) that is at `place` in the picture cannot be seen there. `pixel` is the one in
 /// whose centre it was in another frame.
 bool isHidden(const SeenPoint& seen, const Vec3& point, const Eigen::Vector2d& place, const Eigen::Vector2d& centre,
@@ -139,7 +156,7 @@ bool isHidden(const SeenPoint& seen, const Vec3& point, const Eigen::Vector2d& p
   if (place.x() < 0 || place.y() < 0 || place.x() > frame.pinhole().width() || place.y() > frame.pinhole().height())
     return true;
   const SeenPoint first = place == centre ? frame.seen()[pixel] : frame.rays().seenAt(place.x(), place.y());
-  return seen.isSky() ? !first.isSky() : first.depth < point.z() * (1 - kSameDepth);
+  return isCovered(seen, point.z(), first);
 }
 
 }  // namespace
@@ -258,6 +275,11 @@ Flow flowPass(FrameRays& frame, FrameRays& other, bool findsHidden) {
   Flow flow{std::vector<float>(2 * frame.seen().size(), kNone), {}};
   if (findsHidden) flow.isHidden.assign(frame.seen().size(), 1);
   visitPixels(frame, [&](std::size_t pixel, const Eigen::Vector2d& centre, const SeenPoint& seen) {
+    if (motion.isStill(seen)) {
+      flow.shift[2 * pixel] = flow.shift[2 * pixel + 1] = 0;
+      if (findsHidden && !isCovered(seen, seen.depth, other.seen()[pixel])) flow.isHidden[pixel] = 0;
+      return;
+    }
     const Vec3 ray = frame.pinhole().rayAt(centre.x(), centre.y());
     const Vec3 moved = motion.moved(seen, seen.isSky() ? ray : Vec3(seen.depth * ray));
     auto place = other.pinhole().project(moved);
