@@ -60,6 +60,38 @@ void SoftContacts::takePairs() {
   beginStep();
 }
 
+std::vector<SoftContacts::Record> SoftContacts::record(const std::vector<MovingPose>& poses) const {
+  const auto turnedBy = [&poses](int body) {
+    return body == kFixed ? 0 : poses[static_cast<std::size_t>(body)].turned;
+  };
+  std::vector<Record> records;
+  for (const NearPair& pair : pairs_) {
+    if (pair.isEmpty) continue;
+    const ColliderPair& colliders = geometry_.pairs[pair.pair];
+    records.push_back({colliders.a, colliders.b, colliders.againstPlane, pair.approach, pair.offset,
+                       turnedBy(pair.bodyA) + turnedBy(pair.bodyB) - pair.turned,
+                       manifolds_[static_cast<std::size_t>(pair.manifold)]});
+  }
+  return records;
+}
+
+void SoftContacts::goOnFrom(const std::vector<Record>& records) {
+  auto next = pairs_.begin();  // both are in the order of pairs
+  for (const Record& record : records) {
+    const auto order = orderOf(record.a, record.b, record.isAgainstPlane);
+    next = std::find_if(next, pairs_.end(), [&](const NearPair& pair) { return !(orderOf(pair) < order); });
+    if (next == pairs_.end()) return;
+    if (orderOf(*next) != order) continue;  // they have parted
+    giveManifold(*next);
+    PersistentManifold& manifold = manifolds_[static_cast<std::size_t>(next->manifold)];
+    const ContactMaterial* material = manifold.material;
+    manifold = record.manifold;
+    manifold.bodyA = next->bodyA, manifold.bodyB = next->bodyB, manifold.material = material;
+    next->isEmpty = false, next->approach = record.approach;
+    next->offset = record.offset, next->turned = -record.turned;
+  }
+}
+
 /// A lower bound (m) of how far a pair's surfaces are apart now.
 double SoftContacts::clearanceOf(const NearPair& pair, const MovingPose& a, const MovingPose& b) {
   if (!pair.isEmpty) return -std::numeric_limits<double>::infinity();

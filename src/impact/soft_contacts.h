@@ -57,6 +57,20 @@ class SoftContacts {
       if (!pair.isEmpty) visit(geometry_.pairs[pair.pair], pair.manifold, pair.isExchanged);
   }
 
+  /// A pair in contact, and what is known of it from the steps before.
+  struct Record {
+    std::uint64_t a = 0, b = 0;  // of the collider pair
+    bool isAgainstPlane = false;
+    float approach = 0;
+    Vec3 offset = Vec3::Zero();
+    double turned = 0;  // rad, of both since its manifold was found
+    PersistentManifold manifold;
+  };
+  std::vector<Record> record(const std::vector<MovingPose>& poses) const;
+
+  /// Takes the contacts of a record among the pairs that were taken last; poses have not turned since.
+  void goOnFrom(const std::vector<Record>& records);
+
   /// Calls visit(a, b) for each two moving bodies that are in contact, sleepers too.
   template <class Visit>
   void forEachTouching(const Visit& visit) const {

@@ -27,6 +27,11 @@ SoftSleep::SoftSleep(std::vector<double> masses, double stillTime)
       hasMovingNeighbor_(masses_.size(), 0),
       awake_(masses_.size()) {}
 
+void SoftSleep::goOnFrom(const Record& record) {
+  isAsleep_ = record.isAsleep, stillTimes_ = record.stillTimes;
+  awake_ = static_cast<std::size_t>(std::ranges::count(isAsleep_, 0));
+}
+
 void SoftSleep::wakeTouched(const SoftContacts& contacts, const std::vector<MovingPose>& poses, double slow,
                             std::vector<int>& woken) {
   if (awake_ == masses_.size()) return;

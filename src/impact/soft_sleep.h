@@ -14,6 +14,14 @@ class SoftSleep {
   /// All are awake. `masses` in kg; `stillTime` (s): bodies fall asleep when they have been slow for so long.
   SoftSleep(std::vector<double> masses, double stillTime);
 
+  /// Of each body: whether it is asleep, and for how long (s) it has been slow.
+  struct Record {
+    std::vector<char> isAsleep;
+    std::vector<double> stillTimes;
+  };
+  Record record() const { return {isAsleep_, stillTimes_}; }
+  void goOnFrom(const Record& record);
+
   bool isAsleep(std::size_t body) const { return isAsleep_[body] != 0; }
   std::size_t awake() const { return awake_; }
 

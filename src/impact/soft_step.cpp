@@ -85,6 +85,11 @@ SoftStep::SoftStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
   speeds_.assign(count, 0);
 }
 
+double SoftStep::mostMargin() const {
+  using Soft = SoftParameters;
+  return scale_.length * (Soft::kContactMargin + Soft::kDeflected * Soft::kMaxApproach);
+}
+
 void SoftStep::advance(double timeStep, VectorX& state) {
   using Soft = SoftParameters;
   impacts_.clear(), fallenAsleep_.clear(), woken_.clear();
@@ -96,9 +101,8 @@ void SoftStep::advance(double timeStep, VectorX& state) {
   // How fast do bodies approach each other, and how often must they be looked at for that?
   placeBodies(timeStep, state);
   const double maxApproach = scale_.length * Soft::kMaxApproach, margin = scale_.length * Soft::kContactMargin;
-  const double mostMargin = margin + Soft::kDeflected * maxApproach;
-  if (broadPhase_.update({state, reaches_, displacements_}, mostMargin, geometry_)) contacts_.takePairs();
-  const double approach = timeStep * contacts_.fastestApproach({poses_, state, timeStep, mostMargin}, threads_);
+  if (broadPhase_.update({state, reaches_, displacements_}, mostMargin(), geometry_)) contacts_.takePairs();
+  const double approach = timeStep * contacts_.fastestApproach({poses_, state, timeStep, mostMargin()}, threads_);
   const int substepGroups = std::clamp(static_cast<int>(std::ceil(approach / maxApproach)), 1, Soft::kMaxSubstepGroups);
   const double groupApproach = std::min(approach / substepGroups, maxApproach);
   const int fewest = static_cast<int>(std::ceil(groupApproach / (scale_.length * Soft::kMaxSubStepApproach)));
@@ -288,12 +292,28 @@ void SoftStep::letSleep(double timeStep, VectorX& state) {
     const std::size_t sleeper = static_cast<std::size_t>(fallenAsleep_[i]);
     linearVelocity(state, fallenAsleep_[i]).setZero();
     angularVelocity(state, fallenAsleep_[i]).setZero();
-    poses_[sleeper].linearVelocity.setZero(), poses_[sleeper].angularVelocity.setZero();
-    poses_[sleeper].spinSpeed = 0;
-    poses_[sleeper].isAsleep = true, motions_.pulls[sleeper] = SolverMotions::Pull::asleep,
-    motions_.starts[sleeper] = {};
-    solverBodies_[sleeper] = stillBody(sleeper);
+    putToSleep(sleeper);
   }
+}
+
+void SoftStep::putToSleep(std::size_t body) {
+  MovingPose& pose = poses_[body];
+  pose.linearVelocity.setZero(), pose.angularVelocity.setZero();
+  pose.spinSpeed = 0, pose.isAsleep = true;
+  motions_.pulls[body] = SolverMotions::Pull::asleep, motions_.starts[body] = {};
+  solverBodies_[body] = stillBody(body);
+}
+
+void SoftStep::goOnFrom(const Record& record, const VectorX& state) {
+  sleep_.goOnFrom(record.sleep);
+  isDisturbed_ = record.isDisturbed;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    placeBody(i, state);
+    if (sleep_.isAsleep(i)) putToSleep(i);
+  }
+  broadPhase_.update({state, reaches_, displacements_}, mostMargin(), geometry_);
+  contacts_.takePairs();
+  contacts_.goOnFrom(record.contacts);
 }
 
 }  // namespace cradle

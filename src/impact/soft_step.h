@@ -24,6 +24,17 @@ class SoftStep {
   /// scale) for heaps to stay still. Orientations stay of unit length; the ledger is left as it is.
   void advance(double timeStep, VectorX& state);
 
+  /// What goes from step to step beside the state.
+  struct Record {
+    SoftSleep::Record sleep;
+    std::vector<SoftContacts::Record> contacts;
+    bool isDisturbed = false;
+  };
+  Record record() const { return {sleep_.record(), contacts_.record(poses_), isDisturbed_}; }
+
+  /// To be called before the first step.
+  void goOnFrom(const Record& record, const VectorX& state);
+
   const SoftScale& scale() const { return scale_; }
   bool allAsleep() const { return sleep_.awake() == 0; }
   std::size_t awake() const { return static_cast<std::size_t>(sleep_.awake()); }  // bodies
@@ -55,6 +66,8 @@ class SoftStep {
 
  private:
   void placeBodies(double timeStep, const VectorX& state);
+  void putToSleep(std::size_t body);
+  double mostMargin() const;  // m: what may be in contact within a step is nearer than that
   void placeBody(std::size_t index, const VectorX& state);
   SolverBody solverBody(std::size_t index) const;
   SolverBody stillBody(std::size_t index) const;

@@ -100,9 +100,61 @@ void visit(Archive& archive, Visited<Archive, GroupRecord>& group) {
 }
 
 template <class Archive>
+void visit(Archive& archive, Visited<Archive, Eigen::Vector3f>& vector) {
+  archive(vector.x(), vector.y(), vector.z());
+}
+
+template <class Archive>
+void visit(Archive& archive, Visited<Archive, PersistentManifold>& manifold) {
+  archive(manifold.count, manifold.normalOnA, manifold.onA, manifold.onB, manifold.normal, manifold.separations,
+          manifold.forces, manifold.frictionForce, manifold.twist, manifold.friction);
+}
+
+template <class Archive>
+void visit(Archive& archive, Visited<Archive, SoftContacts::Record>& contact) {
+  archive(contact.a, contact.b, contact.isAgainstPlane, contact.approach, contact.offset, contact.turned,
+          contact.manifold);
+}
+
+template <class Archive>
+void visit(Archive& archive, Visited<Archive, SoftSleep::Record>& sleep) {
+  archive(sleep.isAsleep, sleep.stillTimes);
+}
+
+template <class Archive>
+void visit(Archive& archive, Visited<Archive, SoftStep::Record>& step) {
+  archive(step.sleep, step.contacts, step.isDisturbed);
+}
+
+template <class Archive>
+void visit(Archive& archive, Visited<Archive, ContactWrench>& wrench) {
+  archive(wrench.contact, wrench.bodyA, wrench.bodyB, wrench.force, wrench.normalForce, wrench.torque, wrench.point);
+}
+
+template <class Archive>
+void visit(Archive& archive, Visited<Archive, SoftSubsteps::Record>& pile) {
+  archive(pile.time, pile.state, pile.step, pile.startEnergy, pile.hasSleepChanged, pile.atRest);
+}
+
+template <class Archive>
+void visit(Archive& archive, Visited<Archive, UniformMotion>& motion) {
+  archive(motion.position, motion.velocity, motion.acceleration);
+}
+
+template <class Archive>
+void visit(Archive& archive, Visited<Archive, SphereFlights::Record>& flight) {
+  archive(flight.motion, flight.since, flight.supports);
+}
+
+template <class Archive>
+void visit(Archive& archive, Visited<Archive, HardSpheres::Record>& spheres) {
+  archive(spheres.state, spheres.flights, spheres.origin, spheres.originRest, spheres.time);
+}
+
+template <class Archive>
 void visit(Archive& archive, Visited<Archive, WorldRecord>& world) {
-  archive(world.time, world.frame, world.islands, world.groups, world.promiseEnds, world.isToldOf, world.corrections,
-          world.evaluations);
+  archive(world.time, world.frame, world.islands, world.groups, world.spheres, world.piles, world.promiseEnds,
+          world.isToldOf, world.corrections, world.evaluations);
 }
 
 template <class Archive>

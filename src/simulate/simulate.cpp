@@ -57,7 +57,7 @@ class CheckpointSchedule {
       next_ = 0, workThen_ = 0;  // as the run then goes on from its record
       return true;
     }
-    if (!run.hasRecords() || run.work() - workThen_ < work_) return false;
+    if (run.work() - workThen_ < work_) return false;
     long next = frame + 1;
     while (next < lastFrame(scene_) && frameTime(scene_, next) < run.clock()) ++next;
     workThen_ = run.work();

@@ -66,6 +66,13 @@ SoftSubsteps::SoftSubsteps(Assembly assembly, double longestStep, std::optional<
     if (collider.body != kFixed) innerRadii_[static_cast<std::size_t>(collider.body)] = innerRadius(collider);
 }
 
+SoftSubsteps::SoftSubsteps(Assembly assembly, double longestStep, const Record& record)
+    : SoftSubsteps(std::move(assembly), longestStep) {
+  time_ = record.time, state_ = record.state, startEnergy_ = record.startEnergy;
+  hasSleepChanged_ = record.hasSleepChanged, atRest_ = record.atRest;
+  step_.goOnFrom(record.step, state_);
+}
+
 const VectorX& SoftSubsteps::stateAt(double time) {
   const double same = sameTime(time);
   if (time <= time_ + same) return state_;
@@ -87,7 +94,7 @@ void SoftSubsteps::takeStep(double timeStep) {
   if (isLed) requireRoom(), place();
   book(constant);
   requireNoGain();
-  record();
+  addEvents();
   hasSleepChanged_ = hasSleepChanged_ || !step_.fallenAsleep().empty() || !step_.woken().empty();
 }
 
@@ -156,8 +163,8 @@ void SoftSubsteps::requireNoGain() const {
                             time_, assembly_.names.bodies.size(), assembly_.names.bodies[0], -lost));
 }
 
-void SoftSubsteps::record() {
-  const auto recordBody = [&](EventKind kind, int body) {
+void SoftSubsteps::addEvents() {
+  const auto addBody = [&](EventKind kind, int body) {
     events_.push_back({time_, kind, assembly_.sceneBodies[static_cast<std::size_t>(body)], kWorld,
                        Vec3(centerOfMass(state_, body)), Vec3::Zero(), 0});
   };
@@ -165,9 +172,9 @@ void SoftSubsteps::record() {
     const auto [a, b] = bodiesOf(assembly_, impact.pair);
     events_.push_back({time_, EventKind::impact, a, b, impact.point, impact.normal, impact.impulse});
   }
-  for (const int body : step_.woken()) recordBody(EventKind::wake, body);
+  for (const int body : step_.woken()) addBody(EventKind::wake, body);
   for (const int body : step_.fallenAsleep())
-    if (!assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven()) recordBody(EventKind::rest, body);
+    if (!assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven()) addBody(EventKind::rest, body);
 }
 
 bool SoftSubsteps::isAwake(int sceneBody) const {

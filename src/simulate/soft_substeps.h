@@ -19,6 +19,17 @@ class SoftSubsteps {
   /// Without `threads`, large heaps take as
   /// many as the machine has; the result is the same for any number.
   SoftSubsteps(Assembly assembly, double longestStep, std::optional<int> threads = std::nullopt);
+  /// What goes on beside the assembly; it begins where one ended.
+  struct Record {
+    double time = 0;  // s
+    VectorX state;
+    SoftStep::Record step;
+    double startEnergy = 0;  // J
+    bool hasSleepChanged = false;
+    std::map<std::pair<int, int>, ContactWrench> atRest;
+  };
+  /// Goes on from a record.
+  SoftSubsteps(Assembly assembly, double longestStep, const Record& record);
   SoftSubsteps(const SoftSubsteps&) = delete;
   SoftSubsteps& operator=(const SoftSubsteps&) = delete;
 
@@ -32,6 +43,12 @@ class SoftSubsteps {
 
   const Assembly& assembly() const { return assembly_; }
 
+  Record record() const { return {time_, state_, step_.record(), startEnergy_, hasSleepChanged_, atRest_}; }
+
+  /// As IslandSolver's. A step and a record cost in proportion to the bodies: a record is due after so many steps,
+  /// however many bodies there are.
+  long work() const { return kWorkOfDetection * step_.detections(); }
+
   /// Detection passes: calls of collision detection.
   long evaluations() const { return step_.detections(); }
 
@@ -39,6 +56,7 @@ class SoftSubsteps {
   std::vector<Event> takeEvents();
 
  private:
+  static constexpr long kWorkOfDetection = 1500;
   void takeStep(double timeStep);
   bool isAwake(int sceneBody) const;
   bool isStill(const ColliderPair& pair) const;
@@ -50,7 +68,7 @@ class SoftSubsteps {
   void requireRoom() const;
   void book(double constant);
   void requireNoGain() const;
-  void record();
+  void addEvents();
 
   Assembly assembly_;
   VectorX state_;

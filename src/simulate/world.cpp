@@ -96,9 +96,11 @@ void World::move(std::size_t index, Assembly assembly) {
       return addFlight(std::move(assembly));
     case MotionKind::elasticFlight:
       spheres_.push_back(std::make_unique<HardSpheres>(scene_, std::move(assembly), *hardSpheresOf(scene_, island)));
+      islandOfSpheres_.push_back(index);
       return;
     case MotionKind::pile:
       softIslands_.push_back(std::make_unique<SoftSubsteps>(std::move(assembly), island.method.timeStep));
+      islandOfPile_.push_back(index);
       return;
     case MotionKind::fixedSteps:
     case MotionKind::errorSteps:
@@ -277,11 +279,13 @@ void World::stopAt(double time) {
 }
 
 WorldRecord World::record() const {
-  CRADLE_CHECK(hasRecords() && events_.empty() && warnings_.empty() && newEnds_.empty());
+  CRADLE_CHECK(events_.empty() && warnings_.empty() && newEnds_.empty());
   WorldRecord record;
   record.time = lastTime_, record.frame = lastFrame_;
   for (const auto& solver : solvers_) record.islands.push_back(solver->record());
   for (const auto& group : groups_) record.groups.push_back(group->record());
+  for (const auto& spheres : spheres_) record.spheres.push_back(spheres->record());
+  for (const auto& pile : softIslands_) record.piles.push_back(pile->record());
   record.promiseEnds = promiseEnds_, record.isToldOf = isToldOf_;
   record.corrections = before_.corrections;
   forEachSolver([&](auto& solver, std::size_t) {
@@ -293,7 +297,6 @@ WorldRecord World::record() const {
 }
 
 void World::goOnFrom(const WorldRecord& record) {
-  CRADLE_CHECK(hasRecords());
   before_ = {record.corrections, record.evaluations};
   lastTime_ = record.time, lastFrame_ = record.frame;
   promiseEnds_ = record.promiseEnds, isToldOf_ = record.isToldOf;
@@ -318,12 +321,24 @@ void World::goOnFrom(const WorldRecord& record) {
                                                record.frame, record.time);
     if (tellsContacts_) groups_[i]->tellContacts();
   }
+  for (std::size_t i = 0; i < spheres_.size(); ++i) {
+    const IslandPlan& island = plan_.islands[islandOfSpheres_[i]];
+    spheres_[i] = std::make_unique<HardSpheres>(scene_, assemble(scene_, island), *sphereWorldOf(scene_, island),
+                                                record.spheres.at(i));
+  }
+  for (std::size_t i = 0; i < softIslands_.size(); ++i) {
+    const IslandPlan& island = plan_.islands[islandOfPile_[i]];
+    softIslands_[i] =
+        std::make_unique<SoftSubsteps>(assemble(scene_, island), island.method.timeStep, record.piles.at(i));
+  }
 }
 
 long World::work() const {
   long sum = 0;
   for (const auto& solver : solvers_) sum += solver->work();
   for (const auto& group : groups_) sum += group->work();
+  for (const auto& spheres : spheres_) sum += spheres->work();
+  for (const auto& pile : softIslands_) sum += pile->work();
   return sum;
 }
 

@@ -62,9 +62,6 @@ class World {
   /// How often each kind of correction has happened so far.
   std::map<std::string, long> correctionCounts() const;
 
-  /// Whether there are records to go on from: of heaps with soft contacts, and of balls in closed form, there are none.
-  bool hasRecords() const { return softIslands_.empty() && spheres_.empty(); }
-
   /// s: the latest clock of an island.
   double clock() const;
 
@@ -114,10 +111,10 @@ class World {
   std::vector<std::unique_ptr<IslandSolver>> solvers_;
   long evaluationsOfFrame_ = 0;  // of solvers, in the last one
   std::vector<std::unique_ptr<IslandGroup>> groups_;
-  std::vector<std::size_t> islandOfSolver_, islandOfGroup_;  // of the plan
-  std::vector<std::optional<PromiseEnd>> promiseEnds_;       // by island
-  std::vector<PromiseEnd> newEnds_;                          // not yet taken
-  std::vector<std::string> warnings_;                        // not yet taken
+  std::vector<std::size_t> islandOfSolver_, islandOfGroup_, islandOfSpheres_, islandOfPile_;  // of the plan
+  std::vector<std::optional<PromiseEnd>> promiseEnds_;                                        // by island
+  std::vector<PromiseEnd> newEnds_;                                                           // not yet taken
+  std::vector<std::string> warnings_;                                                         // not yet taken
   std::vector<FlyingIsland> flying_;
   std::vector<std::unique_ptr<HardSpheres>> spheres_;
   std::vector<std::unique_ptr<SoftSubsteps>> softIslands_;

@@ -11,6 +11,8 @@
 #include "simulate/impact_bumps.h"
 #include "simulate/plan/promise.h"
 #include "simulate/resting_bodies.h"
+#include "simulate/soft_substeps.h"
+#include "simulate/spheres/hard_spheres.h"
 
 // Plain records of which a world can be built again, so that it goes on as if nothing had been: all that it is not
 // built anew from the scene.
@@ -58,6 +60,8 @@ struct WorldRecord {
   long frame = 0;
   std::vector<IslandRecord> islands;  // in the order of the plan
   std::vector<GroupRecord> groups;    // the same
+  std::vector<HardSpheres::Record> spheres;
+  std::vector<SoftSubsteps::Record> piles;
   std::vector<std::optional<PromiseEnd>> promiseEnds;
   std::array<char, kCorrectionKinds> isToldOf = {};
   std::array<long, kCorrectionKinds> corrections = {};

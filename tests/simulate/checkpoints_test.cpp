@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -129,10 +130,36 @@ auto ofIslands(const Lose& lose) {
 }
 
 template <class Lose>
+auto ofPiles(const Lose& lose) {
+  return [lose](RunRecord& run) {
+    for (SoftSubsteps::Record& pile : run.world.piles) lose(pile);
+  };
+}
+
+template <class Lose>
 auto ofParts(const Lose& lose) {
   return ofIslands([lose](IslandRecord& island) {
     for (PartRecord& part : island.parts) lose(part);
   });
+}
+
+/// Half of the boxes sleep when they are struck.
+const std::string kHeap = R"("accuracy": "visual", "duration": 3, "bodies": [
+    {"name": "floor", "shape": {"plane": {}}, "motion": "static"},
+    {"name": "box", "shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "position": [0, 0.1, 0],
+     "copies": {"count": [6, 4, 6], "spacing": [0.21, 0.2, 0.21]}},
+    {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0.4, 14, 0.4],
+     "copies": {"count": [3, 1, 3], "spacing": [0.3, 0.3, 0.3]}}])";
+
+/// Three balls in a row between two walls, of which one has this speed (m/s) along the row.
+std::string gas(int speed) {
+  return R"("gravity": [0, 0, 0], "duration": 4, "materials": {"hard": {"restitution": 1,
+    "staticFriction": 0, "dynamicFriction": 0}}, "bodies": [
+    {"name": "left", "shape": {"plane": {"normal": [1, 0, 0]}}, "motion": "static", "material": "hard", "position": [-1, 0, 0]},
+    {"name": "right", "shape": {"plane": {"normal": [-1, 0, 0]}}, "motion": "static", "material": "hard", "position": [1, 0, 0]},
+    {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "material": "hard", "position": [-0.8, 0, 0],
+     "copies": {"count": [3, 1, 1], "spacing": [0.3, 0.0, 0.0]}, "linearVelocity": [)" +
+         std::to_string(speed) + ", 0.001, 0]}]";
 }
 
 std::vector<Loss> losses() {
@@ -160,6 +187,27 @@ std::vector<Loss> losses() {
   const std::string euler = methodText("explicitEuler", 0.01) + R"(, "duration": 4, "bodies": [)" + ball +
                             R"(}], "rods": [{"bodyA": "ball", "anchorB": [1, 1, 0]}])";
   return {
+      {"spheres' flights", gas(3),
+       [](RunRecord& run) {
+         for (HardSpheres::Record& spheres : run.world.spheres) spheres.flights.front().since -= 0.01;
+       }},
+      {"spheres' clock", gas(30),
+       [](RunRecord& run) {
+         for (HardSpheres::Record& spheres : run.world.spheres) spheres.origin = spheres.originRest = 0;
+       }},
+      {"piles' sleep", kHeap, ofPiles([](SoftSubsteps::Record& pile) {
+         pile.step.sleep.isAsleep.assign(pile.step.sleep.isAsleep.size(), 0);
+       })},
+      {"piles' still times", kHeap, ofPiles([](SoftSubsteps::Record& pile) {
+         pile.step.sleep.stillTimes.assign(pile.step.sleep.stillTimes.size(), 0.0);
+       })},
+      {"piles' contacts", kHeap, ofPiles([](SoftSubsteps::Record& pile) { pile.step.contacts.clear(); })},
+      {"piles' forces", kHeap, ofPiles([](SoftSubsteps::Record& pile) {
+         for (SoftContacts::Record& contact : pile.step.contacts) contact.manifold.forces.fill(0);
+       })},
+      {"piles' disturbance", kHeap,
+       ofPiles([](SoftSubsteps::Record& pile) { pile.step.isDisturbed = !pile.step.isDisturbed; })},
+      {"piles' loads at rest", kHeap, ofPiles([](SoftSubsteps::Record& pile) { pile.atRest.clear(); })},
       {"ledger", bouncing, ofIslands([](IslandRecord& island) { island.state.tail<kLedgerSize>().setZero(); })},
       {"joints", turning,
        ofIslands([](IslandRecord& island) { island.joints.assign(island.joints.size(), JointState{}); })},
@@ -243,6 +291,26 @@ TEST(Checkpoints, LeaveMotionsAsTheyAre) {
       "shape": {"sphere": {"radius": 0.1}}, "position": [0.3, 0, 0]}], "springs": [{"bodyA": "ball", "anchorB": [0, 1, 0],
       "stiffness": 90}])"),
                1e-9, name);
+}
+
+// Elastic balls go on along their parabolas, and what they will meet is found anew: to rounding, which 20 collisions in
+// a row make no more than 1e6 times larger. A heap goes on from all that its steps hand on, but sleepers, whose
+// contacts stand where the last sub-steps began, are placed where they are: some 1e-5 m away, and 0.5 % of a box in the
+// end. It sleeps when it is struck, in the middle of the run.
+TEST(Checkpoints, OfHeapsAndOfElasticBallsLeaveMotionsAsTheyAre) {
+  const std::array texts = {kHeap, gas(3)};
+  for (const std::string& text : texts) {
+    const Scene scene = sceneWith(text);
+    World plain(scene);
+    simulate(scene, plain, {[](const Frame&) {}, [](const Event&) {}, [](const std::string&) {}});
+    const Told whole = tell(scene, std::max(1L, plain.work() / 12));
+    EXPECT_GE(whole.checkpoints.size(), 5);
+    const Told never = tell(scene, 1'000'000'000'000);
+    EXPECT_LT(largestDistance(whole, never), &text == &texts[0] ? 1e-3 : 1e-9);
+    EXPECT_EQ(whole.cost.evaluations, never.cost.evaluations);
+    for (std::size_t i = 0; i < whole.checkpoints.size(); ++i)
+      expectSameBehind(whole, i, tell(scene, std::max(1L, plain.work() / 12), whole.checkpoints[i].record));
+  }
 }
 
 TEST(Checkpoints, ThatAreDamagedAreRefused) {

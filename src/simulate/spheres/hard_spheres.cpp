@@ -53,6 +53,15 @@ HardSpheres::HardSpheres(const Scene& scene, Assembly assembly, SphereWorld worl
   for (int sphere = 0; sphere < world_.sphereCount(); ++sphere) predict(sphere);
 }
 
+HardSpheres::HardSpheres(const Scene& scene, Assembly assembly, SphereWorld world, const Record& record)
+    : HardSpheres(scene, std::move(assembly), std::move(world)) {
+  state_ = record.state;
+  origin_ = record.origin, originRest_ = record.originRest, time_ = record.time;
+  flights_.goOnFrom(record.flights, time_, sinceOrigin(scene.duration));
+  for (int sphere = 0; sphere < world_.sphereCount(); ++sphere) predict(sphere);
+  evaluations_ = 0;
+}
+
 const VectorX& HardSpheres::stateAt(double time) {
   const double same = sameTime(time);
   while (queue_.firstTime() <= sinceOrigin(time) + same) advance();
@@ -113,7 +122,7 @@ void HardSpheres::collide(int sphere) {
   refuseLastingContact();
   impactEnergy(state_) += impact_.energyTaken();
   numericalEnergy(state_) += impact_.energyLost();
-  record();
+  addEvents();
   for (const int struck : impact_.spheres()) countHit(struck);
   for (const int struck : impact_.spheres()) predict(struck);
 }
@@ -130,7 +139,7 @@ void HardSpheres::schedule(int sphere) {
   queue_.set(sphere, std::min(crossings_[index].time, collisions_[index].time));
 }
 
-void HardSpheres::record() {
+void HardSpheres::addEvents() {
   for (std::size_t i = 0; i < impact_.contacts().size(); ++i) {
     const SphereContact& contact = impact_.contacts()[i];
     const double impulse = impact_.impulses()[i];

@@ -17,6 +17,14 @@ class HardSpheres {
  public:
   /// Keeps a reference to `scene`, whose island this is.
   HardSpheres(const Scene& scene, Assembly assembly, SphereWorld world);
+
+  struct Record {
+    VectorX state;
+    std::vector<SphereFlights::Record> flights;
+    double origin = 0, originRest = 0, time = 0;  // s, see below
+  };
+  /// Goes on from a record: predictions are made anew.
+  HardSpheres(const Scene& scene, Assembly assembly, SphereWorld world, const Record& record);
   HardSpheres(const HardSpheres&) = delete;
   HardSpheres& operator=(const HardSpheres&) = delete;
 
@@ -28,6 +36,12 @@ class HardSpheres {
   std::vector<ContactWrench> contactWrenches() const;
 
   const Assembly& assembly() const { return assembly_; }
+
+  /// All events were taken.
+  Record record() const { return {state_, flights_.record(), origin_, originRest_, time_}; }
+
+  /// As IslandSolver's.
+  long work() const { return evaluations_; }
 
   /// Parabolas evaluated for collisions, ways out of cells, and frames.
   long evaluations() const { return evaluations_; }
@@ -42,7 +56,7 @@ class HardSpheres {
   void collide(int sphere);
   void predict(int sphere);
   void schedule(int sphere);
-  void record();
+  void addEvents();
   void countHit(int sphere);
   void refuseLastingContact() const;
   double timeSinceStart() const { return origin_ + (originRest_ + time_); }

@@ -59,6 +59,16 @@ bool SphereFlights::renewCells(double now) {
   return true;
 }
 
+std::vector<SphereFlights::Record> SphereFlights::record() const {
+  return {flights_.begin(), flights_.end()};
+}
+
+void SphereFlights::goOnFrom(const std::vector<Record>& records, double now, double duration) {
+  for (std::size_t sphere = 0; sphere < flights_.size(); ++sphere) flights_[sphere] = {records.at(sphere), 0};
+  duration_ = duration;
+  cells_ = cellsAt(now);
+}
+
 void SphereFlights::shiftTime(double origin) {
   for (Flight& flight : flights_) flight.since -= origin;
   duration_ -= origin;
@@ -71,7 +81,7 @@ UniformMotion SphereFlights::motionAt(int sphere, double time) const {
 
 void SphereFlights::strike(int sphere, double time, const UniformMotion& motion, const std::array<int, 3>& supports) {
   Flight& flight = flights_[static_cast<std::size_t>(sphere)];
-  flight = {motion, time, flight.hits + 1, supports};
+  flight = {{motion, time, supports}, flight.hits + 1};
 }
 
 PredictedCollision SphereFlights::nextCollision(int sphere, double now, double crossing) const {

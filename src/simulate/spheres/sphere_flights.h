@@ -40,6 +40,17 @@ class SphereFlights {
   /// Keeps a reference to `world`. Times beyond `duration` (s) are of no interest.
   SphereFlights(const SphereWorld& world, double duration);
 
+  /// How each sphere moves, and what carries it, since it was last struck.
+  struct Record {
+    UniformMotion motion;
+    double since = 0;  // s: the motion's time 0
+    std::array<int, 3> supports = {-1, -1, -1};
+  };
+  std::vector<Record> record() const;
+
+  /// Goes on from a record at `now` (s), before anything is predicted; `duration` (s) is on the same clock.
+  void goOnFrom(const std::vector<Record>& records, double now, double duration);
+
   /// The centre's motion as it goes on from `time` (s).
   UniformMotion motionAt(int sphere, double time) const;
 
@@ -77,11 +88,8 @@ class SphereFlights {
   SphereContact contactOf(int sphere, int other, double now) const;
 
  private:
-  struct Flight {
-    UniformMotion motion;
-    double since = 0;  // s: the motion's time 0
+  struct Flight : Record {
     long hits = 0;
-    std::array<int, 3> supports = {-1, -1, -1};
   };
   void predictAgainstSphere(const UniformMotion& motion, int sphere, int other, double now,
                             PredictedCollision& best) const;
