@@ -125,14 +125,7 @@ Image besideEachOther(std::deque<Part>& parts, long frame) {
   return joined;
 }
 
-}  // namespace
-
-void makeFilm(const std::string& input, const std::string& film, const PictureOptions& options, bool quiet) {
-  requireWritableFile(film);
-  requireOtherFile(film, input);
-  if (options.overlay) parseOverlays(*options.overlay);
-  TrajectorySource source(input, quiet, {.assetRoot = options.assetRoot});
-  const PictureOrder order(options, source.scene());
+void drawFilm(TrajectorySource& source, const PictureOrder& order, const std::string& film, bool quiet) {
   VideoEncoder encoder(film, {order.size.width, order.size.height, source.scene().output.framesPerSecond});
   const bool drawsBeside = isSeenFromTheStart(source.scene()) && !(order.overlays && order.overlays->needsWholeFilm());
   if (!drawsBeside) source.simulate();
@@ -152,6 +145,24 @@ void makeFilm(const std::string& input, const std::string& film, const PictureOp
       [&](long, const Image& picture) { encoder.add(picture); });
   source.finish();
   encoder.finish();
+}
+
+}  // namespace
+
+void makeFilm(const std::string& input, const std::string& film, const PictureOptions& options, bool quiet) {
+  requireWritableFile(film);
+  requireOtherFile(film, input);
+  if (options.overlay) parseOverlays(*options.overlay);
+  TrajectorySource source(input, quiet, {.assetRoot = options.assetRoot});
+  const PictureOrder order(options, source.scene());
+  source.keepAt(film + ".sqlite");
+  try {
+    drawFilm(source, order, film, quiet);
+  } catch (const Error& error) {
+    const std::string kept = error.kind() == ErrorKind::interrupted ? source.endKept() : "";
+    if (kept.empty()) throw;
+    throw Error(error.kind(), "", fmt::format("{}; the frames simulated up to then are in {}", error.what(), kept));
+  }
 }
 
 void makeSideBySideFilm(const std::vector<std::string>& inputs, const std::string& film, const PictureOptions& options,

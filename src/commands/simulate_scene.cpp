@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "commands/run_cameras.h"
+#include "commands/run_file.h"
 #include "commands/warnings.h"
 #include "core/console.h"
 #include "core/cpu_stopwatch.h"
@@ -116,48 +117,6 @@ void checkAccuracy(const Scene& scene, const std::string& output, bool prints, b
   }
 }
 
-/// Of all that a motion depends on, and of the program.
-std::string fingerprintOf(const Scene& scene, const TrajectoryHeader& header, bool isStrict) {
-  constexpr std::uint64_t kMaxProgram = 1'000'000'000;  // bytes
-  static const std::string program = textHash(readFile("/proc/self/exe", kMaxProgram, ErrorKind::output));
-  Hash hash;
-  const auto add = [&hash](const std::string& text) {
-    const std::string line = text + '\n';
-    hash.add(std::as_bytes(std::span(line)));
-  };
-  add(program), add(scene.text), add(header.plan), add(header.method);
-  add(isStrict ? "strict" : "");  // would have ended at what others have only told
-  add(fmt::format("{} {} {} {}", scene.accuracy, scene.duration, scene.method ? int(scene.method->name) : -1,
-                  scene.method ? scene.method->timeStep.value_or(0) : 0));
-  for (const Model& mesh : header.meshes) {
-    hash.add(std::as_bytes(std::span(mesh.drawn.vertices)));
-    hash.add(std::as_bytes(std::span(mesh.drawn.triangles)));
-  }
-  return hash.hex();
-}
-
-/// The checkpoint of an unfinished run of that scene, if there is one that can be gone on from.
-std::optional<Checkpoint> checkpointIn(const std::string& part, const std::function<std::string()>& fingerprint) {
-  if (!isTrajectoryFile(part)) return std::nullopt;
-  try {
-    const TrajectoryReader told(part);
-    const auto stored = told.checkpoint();
-    if (!stored || told.isFinished() || stored->fingerprint != fingerprint()) return std::nullopt;
-    const Checkpoint checkpoint = checkpointOf(runRecordOf(stored->record), stored->record);
-    if (checkpoint.frame >= told.frameCount() || told.countEvents(checkpoint.eventCount) != checkpoint.eventCount ||
-        std::ssize(told.contacts()) < checkpoint.contactCount)
-      return std::nullopt;
-    Hash hash;
-    for (long frame = 0; frame <= checkpoint.frame; ++frame) addFrame(told.readFrame(frame), hash);
-    return hash.hex() == stored->stateHash ? std::optional(checkpoint) : std::nullopt;
-  } catch (const Error&) {  // damaged
-    return std::nullopt;
-  }
-}
-
-/// Of a run, for its checkpoints; without one none are kept.
-using Fingerprint = std::function<std::string()>;
-
 /// A simulation into a trajectory file.
 class FileRun {
  public:
@@ -170,18 +129,15 @@ class FileRun {
         cameras_(scene, [&writer](const CameraPose& camera) { writer.append(camera); }),
         progress_("Simulating", "frames", lastFrame(scene) + 1, quiet) {}
 
-  /// Takes over the frames and events of an ended run up to its checkpoint.
-  void note(const TrajectoryReader& told, const Checkpoint& checkpoint) {
-    const std::vector<Event> events = told.events();
-    auto event = events.begin();
-    for (long number = 0; number <= checkpoint.frame; ++number) {
-      throwIfInterrupted();
-      const Frame frame = told.readFrame(number);
-      for (; event != events.end() && event->time <= frame.time; ++event) cameras_.note(*event);
-      cameras_.note(frame);
-      if (watch_) watch_->check(frame);
-    }
-    progress_.skipTo(checkpoint.frame + 1);
+  /// Takes over the frames and events of an ended run.
+  void note(RunFile& file) {
+    const long kept = file.tellKept(
+        [this](const Frame& frame) {
+          cameras_.note(frame);
+          if (watch_) watch_->check(frame);
+        },
+        [this](const Event& event) { cameras_.note(event); });
+    progress_.skipTo(kept);
   }
 
   /// Simulates what is missing behind the record of a checkpoint, or all, and finishes the file.
@@ -282,30 +238,19 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   refuseUnsupported(scene);
   World world(scene);
   requireNoWriter(partPath(output));  // planning may have taken long
-  const TrajectoryHeader header = headerOf(scene, world.plan());
-  const Fingerprint fingerprint = [&] { return fingerprintOf(scene, header, options.isStrict); };
-  const std::optional<Checkpoint> from = options.isFresh ? std::nullopt : checkpointIn(partPath(output), fingerprint);
-  std::optional<TrajectoryReader> told;
-  if (from) told.emplace(partPath(output));
-  std::optional<TrajectoryWriter> file;
-  from ? file.emplace(output, header, *from) : file.emplace(output, header);
-  TrajectoryWriter& writer = *file;
+  RunFile file(output, scene, world, options.isStrict, options.isFresh);
   std::optional<StrictWatch> watch;
   if (options.isStrict) watch.emplace(scene, world.plan());
-  const auto tellWhatIsKept = [&writer](ErrorKind kind, const std::string& what) {
-    const std::string kept = writer.keptPath();
+  const auto tellWhatIsKept = [&file](ErrorKind kind, const std::string& what) {
+    const std::string kept = file.writer().keptPath();
     throw Error(kind, "", kept.empty() ? what : fmt::format("{}; the frames up to then are in {}", what, kept));
   };
   try {
-    FileRun run(writer, scene, world, watch ? &*watch : nullptr, quiet);
-    if (from) {
-      if (!quiet)
-        show(stderr, "note: going on after frame {} of {}; --fresh begins anew\n", from->frame,
-             printableLine(partPath(output)));
-      run.note(*told, *from);
-      told.reset();
-    }
-    const std::string record = from ? from->record : "";
+    FileRun run(file.writer(), scene, world, watch ? &*watch : nullptr, quiet);
+    if (!quiet) file.tellOfCheckpoint("; --fresh begins anew");
+    run.note(file);
+    const Fingerprint fingerprint = [&file] { return file.fingerprint(); };
+    const std::string record = file.record();
     if (!options.untilItFails)
       run.finish(record, fingerprint);
     else if (const auto failure = run.finishOrFail(record, fingerprint))

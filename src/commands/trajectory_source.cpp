@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "commands/simulate_scene.h"
 #include "commands/warnings.h"
 #include "core/error.h"
+#include "core/progress.h"
 #include "render/upright.h"
 #include "scene/load_scene.h"
 #include "simulate/assembly.h"
@@ -150,7 +152,31 @@ void TrajectorySource::simulateBy(const Simulate& simulateInto) {
   open(TrajectoryReader(writer));
 }
 
+void TrajectorySource::keepAt(const std::string& path) {
+  if (!reader_) kept_.emplace(path, scene_, quiet_);
+}
+
+std::string TrajectorySource::endKept() {
+  stream_.reset();
+  return kept_ && std::filesystem::exists(kept_->part()) ? kept_->part() : "";
+}
+
+/// As simulate(), into the file that is kept.
+void TrajectorySource::simulateKept() {
+  Progress progress("Simulating", "frames", frameCount_, quiet_);
+  SimulationSink sink{[&](const Frame& frame) { progress.update(frame.number + 1); }, [](const Event&) {},
+                      [&](const std::string& warning) {
+                        progress.endLine();
+                        cradle::warn(warning);
+                      }};
+  sink.reached = [&](double time) { progress.showTime(time); };
+  kept_->run(sink);
+  progress.endLine();
+  open(TrajectoryReader(kept_->part()));
+}
+
 void TrajectorySource::simulate() {
+  if (kept_) return simulateKept();
   simulateBy([this](TrajectoryWriter& writer, World& world) { simulateInto(writer, scene_, world, quiet_); });
 }
 
@@ -166,7 +192,10 @@ void TrajectorySource::simulateBeside(std::function<void(const std::string&)> wa
   if (reader_) return;
   warn_ = std::move(warn);
   reached_ = std::move(reached);
-  stream_.emplace(scene_);
+  if (kept_)
+    stream_.emplace([this](const SimulationSink& sink) { kept_->run(sink); });
+  else
+    stream_.emplace(scene_);
 }
 
 Frame TrajectorySource::frameAt(long number) {

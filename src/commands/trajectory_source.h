@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/kept_simulation.h"
 #include "commands/simulate_scene.h"
 #include "scene/scene.h"
 #include "simulate/frame_stream.h"
@@ -45,6 +46,12 @@ class TrajectorySource {
   /// Known before the simulation, too.
   long frameCount() const { return frameCount_; }
 
+  /// What is simulated of a scene is kept in PATH.part while this object lives: see KeptSimulation.
+  void keepAt(const std::string& path);
+
+  /// Ends a simulation that was interrupted. Returns the file that keeps it; empty without one.
+  std::string endKept();
+
   /// Simulates the scene; with a trajectory there is nothing to do. To be called once, before frames are read.
   void simulate();
 
@@ -83,6 +90,7 @@ class TrajectorySource {
   void open(TrajectoryReader trajectory);
   void setScene(Scene scene);
   std::vector<Event> drawn(std::vector<Event> events) const;
+  void simulateKept();
   template <class Simulate>
   void simulateBy(const Simulate& simulateInto);
 
@@ -93,6 +101,7 @@ class TrajectorySource {
   long frameCount_ = 0;
   std::function<void(const std::string&)> warn_;
   std::function<void(double time)> reached_;
+  std::optional<KeptSimulation> kept_;
   std::deque<Frame> waiting_;          // of the stream: those that may be asked for again, at least the latest
   std::optional<FrameStream> stream_;  // of scene_
 };

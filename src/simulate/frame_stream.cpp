@@ -1,10 +1,14 @@
 #include "simulate/frame_stream.h"
 
-#include "simulate/simulate.h"
+#include <utility>
 
 namespace cradle {
 
-FrameStream::FrameStream(const Scene& scene) : thread_([this, &scene] { run(scene); }) {}
+FrameStream::FrameStream(const Scene& scene)
+    : FrameStream([&scene](const SimulationSink& sink) { simulate(scene, sink); }) {}
+
+FrameStream::FrameStream(std::function<void(const SimulationSink&)> simulate)
+    : thread_([this, simulate = std::move(simulate)] { run(simulate); }) {}
 
 FrameStream::~FrameStream() {
   {
@@ -15,7 +19,7 @@ FrameStream::~FrameStream() {
   thread_.join();
 }
 
-void FrameStream::run(const Scene& scene) {
+void FrameStream::run(const std::function<void(const SimulationSink&)>& simulate) {
   try {
     const auto putPush = [this](const Event& event) {
       if (event.kind == EventKind::pushStart || event.kind == EventKind::pushMissed) put(event);
@@ -23,7 +27,7 @@ void FrameStream::run(const Scene& scene) {
     SimulationSink sink{[this](const Frame& frame) { put(frame); }, putPush,
                         [this](const std::string& warning) { put(warning); }};
     sink.reached = [this](double time) { put(time); };
-    simulate(scene, sink);
+    simulate(sink);
   } catch (const Closed&) {
   } catch (...) {
     const std::lock_guard lock(mutex_);

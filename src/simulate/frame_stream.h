@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "simulate/simulate.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {
@@ -22,6 +23,9 @@ class FrameStream {
 
   /// Begins. `scene` must outlive this object.
   explicit FrameStream(const Scene& scene);
+
+  /// The same of anything that tells a sink the frames of a run, its events and warnings.
+  explicit FrameStream(std::function<void(const SimulationSink&)> simulate);
 
   /// Ends the simulation, with the frame under way at the latest.
   ~FrameStream();
@@ -39,7 +43,7 @@ class FrameStream {
  private:
   using Item = std::variant<Frame, Event, double, std::string, std::exception_ptr>;  // the last three: s, warning, end
   struct Closed {};
-  void run(const Scene& scene);
+  void run(const std::function<void(const SimulationSink&)>& simulate);
   void put(Item item);
   Item take();
 

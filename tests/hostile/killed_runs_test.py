@@ -123,6 +123,8 @@ class KilledRuns(unittest.TestCase):
         springs = [{"bodyA": "ball%d" % k, **({"bodyB": "ball%d" % (k - 1)} if k else {"anchorB": [0, 1, 0]}), "stiffness": 5000}
                    for k in range(5)]
         write(path("long.json"), scene(8, bodies=spheres, springs=springs, method={"name": "rk4", "timeStep": 1.5e-5}))
+        write(path("seen.json"), scene(3, bodies=spheres, springs=springs, method={"name": "rk4", "timeStep": 1.5e-5},
+                                       camera={"position": [0, -2, 9], "target": [0, -2, 0]}))
         write(path("film.json"), scene(0.5, method={"name": "rk4", "timeStep": 1e-5}))
         sphere = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}
         write(path("short.json"), scene(0.5, bodies=[sphere]))
@@ -224,10 +226,10 @@ class KilledRuns(unittest.TestCase):
         for name in run.names & self.whole.keys():
             self.require_whole(run, name)
 
-    def killed_behind_a_checkpoint(self, folder):
+    def killed_behind_a_checkpoint(self, folder, command=COMMANDS["simulate"], name="a.sqlite.part"):
         """Leaves the unfinished trajectory of a run that was killed when it had come to its first checkpoint."""
-        part = os.path.join(folder, "out", "a.sqlite.part")
-        process = subprocess.Popen([PROGRAM, "-q", *COMMANDS["simulate"]], cwd=folder)
+        part = os.path.join(folder, "out", name)
+        process = subprocess.Popen([PROGRAM, "-q", *command], cwd=folder)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
 
@@ -281,6 +283,19 @@ class KilledRuns(unittest.TestCase):
             database.executescript(damage)
             database.close()
             self.assertEqual(self.rows_of_next_run(folder, *options), ([], rows), (options, damage))
+
+    def test_video_goes_on_from_its_checkpoint(self):
+        command = ["video", "in/seen.json", "-o", "out/a.mp4"]
+        folder = self.folder("video")
+        subprocess.run([PROGRAM, "-q", *command], cwd=folder, check=True)
+        whole = everything(os.path.join(folder, "out"))
+        self.assertEqual(whole.keys(), {"a.mp4"})
+        folder = self.folder("video")
+        self.killed_behind_a_checkpoint(folder, command, "a.mp4.sqlite.part")
+        run = subprocess.run([PROGRAM, *command], cwd=folder, capture_output=True, text=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertRegex(run.stderr, r"note: going on after frame \d+ of out/a.mp4.sqlite.part\n")
+        self.assertEqual(everything(os.path.join(folder, "out")), whole)
 
     def test_a_run_of_another_scene_does_not_go_on(self):
         folder = self.folder("simulate")

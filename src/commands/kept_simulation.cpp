@@ -1,0 +1,51 @@
+#include "commands/kept_simulation.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "commands/run_file.h"
+#include "core/interruption.h"
+#include "core/output_path.h"
+#include "core/part_lock.h"
+#include "simulate/world.h"
+
+namespace cradle {
+
+KeptSimulation::KeptSimulation(std::string path, const Scene& scene, bool quiet)
+    : path_(std::move(path)), scene_(scene), quiet_(quiet) {
+  requireNoWriter(part());
+}
+
+KeptSimulation::~KeptSimulation() {
+  if (interruptingSignal() != 0) return;
+  std::error_code ignored;
+  std::filesystem::remove(part(), ignored);
+}
+
+std::string KeptSimulation::part() const {
+  return partPath(path_);
+}
+
+void KeptSimulation::run(const SimulationSink& told) {
+  World world(scene_);
+  RunFile file(path_, scene_, world, false, false);
+  if (!quiet_) file.tellOfCheckpoint();
+  file.tellKept(told.frame, told.event);
+  SimulationSink sink = told;
+  sink.frame = [&](const Frame& frame) {
+    file.writer().append(frame);
+    told.frame(frame);
+  };
+  sink.event = [&](const Event& event) {
+    file.writer().append(event);
+    told.event(event);
+  };
+  sink.contact = [&](const LastingContact& contact) { file.writer().append(contact); };
+  sink.checkpoint = [&](Checkpoint checkpoint) {
+    checkpoint.fingerprint = file.fingerprint();
+    file.writer().append(checkpoint);
+  };
+  simulate(scene_, world, sink, file.record());
+}
+
+}  // namespace cradle
