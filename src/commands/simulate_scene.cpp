@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "commands/run_cameras.h"
@@ -21,16 +20,13 @@
 #include "core/part_lock.h"
 #include "core/printable.h"
 #include "core/progress.h"
-#include "core/read_file.h"
 #include "overlay/caption_check.h"
 #include "render/camera_path.h"
-#include "scene/count_bodies.h"
 #include "scene/load_scene.h"
 #include "scene/named_accuracy.h"
 #include "scene/parse_settings.h"
 #include "scene/ranges.h"
 #include "simulate/assembly.h"
-#include "simulate/run_record.h"
 #include "simulate/simulate.h"
 #include "simulate/strict_watch.h"
 #include "simulate/world.h"

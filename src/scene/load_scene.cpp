@@ -66,6 +66,7 @@ SceneDraft parseText(const JsonValue& document, FaultList& faults) {
   parseCaptions(root, draft);
   parseBumps(root, draft);
   parseWishes(root, draft);
+  root.text("$schema", "");  // for editors
   root.rejectUnknownKeys();
   completeLinks(draft, faults);
   return draft;

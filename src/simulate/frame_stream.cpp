@@ -8,7 +8,7 @@ FrameStream::FrameStream(const Scene& scene)
     : FrameStream([&scene](const SimulationSink& sink) { simulate(scene, sink); }) {}
 
 FrameStream::FrameStream(std::function<void(const SimulationSink&)> simulate)
-    : thread_([this, simulate = std::move(simulate)] { run(simulate); }) {}
+    : thread_([this, told = std::move(simulate)] { run(told); }) {}
 
 FrameStream::~FrameStream() {
   {
