@@ -52,19 +52,21 @@ world.quaternion.copy(turn);
 scene.add(upright, world);
 
 const vector = numbers => new THREE.Vector3(...numbers);
-const middle = vector(motion.middle);
+// All is drawn from the middle of what is shown: 32-bit numbers are exact enough there, however far it is from the origin.
+const middle = vector(motion.middle), origin = middle.clone().applyQuaternion(turn.clone().conjugate());  // of upright, of world
 const camera = new THREE.PerspectiveCamera(motion.camera.verticalFieldOfView, 1, size / 500, 100 * size);
-camera.position.copy(vector(motion.camera.position));
+camera.position.copy(vector(motion.camera.position)).sub(middle);
 camera.up.copy(vector(motion.camera.up));
 const orbit = new THREE.OrbitControls(camera, renderer.domElement);
-orbit.target.copy(vector(motion.camera.target));
+// On the way of the look, beside the middle: what is turned about.
+const look = vector(motion.camera.target).sub(middle).sub(camera.position).normalize();
+orbit.target.copy(camera.position).addScaledVector(look, Math.max(-look.dot(camera.position), size / 100));
 orbit.enableKeys = false;  // the arrows are for frames
 orbit.update();
 
 scene.add(new THREE.HemisphereLight(0xffffff, 0x8d8577, 0.75));
 const sun = new THREE.DirectionalLight(0xfff4e6, 0.9);
-sun.position.copy(middle).add(new THREE.Vector3(0.45, 1, 0.35).normalize().multiplyScalar(3 * size));
-sun.target.position.copy(middle);
+sun.position.set(0.45, 1, 0.35).normalize().multiplyScalar(3 * size);
 sun.castShadow = true;
 sun.shadow.mapSize.set(2048, 2048);
 sun.shadow.bias = -0.0005;
@@ -163,13 +165,13 @@ function takePoses(from, into, frame, share) {
   }
 }
 
-/// Writes a matrix: a turn by the quaternion (w, x, y, z), of columns that are scaled, and a place.
+/// Writes a matrix: a turn by the quaternion (w, x, y, z), of columns that are scaled, and a place in the world.
 function writeMatrix(matrices, index, w, x, y, z, px, py, pz, sx, sy, sz) {
   const m = 16 * index;
   matrices[m] = sx * (1 - 2 * (y * y + z * z)), matrices[m + 1] = sx * 2 * (x * y + w * z), matrices[m + 2] = sx * 2 * (x * z - w * y);
   matrices[m + 4] = sy * 2 * (x * y - w * z), matrices[m + 5] = sy * (1 - 2 * (x * x + z * z)), matrices[m + 6] = sy * 2 * (y * z + w * x);
   matrices[m + 8] = sz * 2 * (x * z + w * y), matrices[m + 9] = sz * 2 * (y * z - w * x), matrices[m + 10] = sz * (1 - 2 * (x * x + y * y));
-  matrices[m + 12] = px, matrices[m + 13] = py, matrices[m + 14] = pz, matrices[m + 15] = 1;
+  matrices[m + 12] = px - origin.x, matrices[m + 13] = py - origin.y, matrices[m + 14] = pz - origin.z, matrices[m + 15] = 1;
 }
 
 /// A point (x, y, z) of a body in the world; body -1 is the world.
@@ -228,9 +230,9 @@ if (motion.ground) {
   };
   const floor = new THREE.Mesh(new THREE.PlaneBufferGeometry(width, width).rotateX(-Math.PI / 2), material);
   // Squares begin at the plane's own point, however far away the motion is.
-  const normal = vector(ground.normal), place = vector(ground.point), period = 2 * ground.square;
+  const normal = vector(ground.normal), place = vector(ground.point).sub(middle), period = 2 * ground.square;
   floor.quaternion.setFromUnitVectors(kY, normal);
-  const local = middle.clone().sub(place).applyQuaternion(floor.quaternion.clone().conjugate());
+  const local = place.clone().negate().applyQuaternion(floor.quaternion.clone().conjugate());
   local.set(period * Math.round(local.x / period), 0, period * Math.round(local.z / period));
   floor.position.copy(place).add(local.applyQuaternion(floor.quaternion));
   floor.receiveShadow = true;
@@ -286,7 +288,7 @@ function placeLinks() {
 }
 
 // Arrows, on the body that moves: forces of contacts that last, and impulses of impacts for a moment.
-const kMostArrows = 600, kMoment = 0.12;  // s of film
+const kMaxArrows = 600, kImpulseShown = 0.12;  // s of film
 const arrowGeometry = (() => {
   const shaft = new THREE.CylinderBufferGeometry(0.4, 0.4, 0.75, 10).translate(0, -0.125, 0), tip = new THREE.ConeBufferGeometry(1, 0.25, 16).translate(0, 0.375, 0);
   const joined = new THREE.BufferGeometry(), count = shaft.getAttribute("position").count;
@@ -295,11 +297,11 @@ const arrowGeometry = (() => {
   joined.setIndex([...shaft.index.array, ...Array.from(tip.index.array, i => i + count)]);
   return joined;
 })();
-const arrowMesh = instances(arrowGeometry, Array.from({ length: kMostArrows }, () => ({ color: [0.9, 0.35, 0.02] })), solid, false);
+const arrowMesh = instances(arrowGeometry, Array.from({ length: kMaxArrows }, () => ({ color: [0.9, 0.35, 0.02] })), solid, false);
 const largest = values => values.reduce((most, value) => Math.max(most, value), 0);
 const forceSizes = Array.from({ length: forces.length / 6 }, (_, i) => Math.hypot(forces[6 * i], forces[6 * i + 1], forces[6 * i + 2])).sort((a, b) => a - b);
 const largeForce = forceSizes[Math.floor(0.95 * (forceSizes.length - 1))] || 1;
-const impacts = motion.events.filter(event => event.impulse > 0), largeImpulse = largest(impacts.map(event => event.impulse)) || 1;
+const impacts = motion.events.filter(event => event.kind === "impact"), largeImpulse = largest(impacts.map(event => event.impulse)) || 1;
 const kArrow = 0.22 * size;  // m: of a large force
 let showsForces = false;
 
@@ -307,7 +309,7 @@ function placeArrows(frame, time) {
   let count = 0;
   const add = (x, y, z, dx, dy, dz, length) => {
     const norm = Math.hypot(dx, dy, dz);
-    if (count === kMostArrows || !(norm > 0) || !(length > 0.002 * size)) return;
+    if (count === kMaxArrows || !(norm > 0) || !(length > 0.002 * size)) return;
     start.set(x, y, z);
     end.set(x + dx / norm * length, y + dy / norm * length, z + dz / norm * length);
     writeBar(arrowMesh.instanceMatrix.array, count++, start, end, 0.012 * size);
@@ -318,7 +320,7 @@ function placeArrows(frame, time) {
           kArrow * Math.min(1, forceSizes.length ? Math.hypot(forces[6 * i], forces[6 * i + 1], forces[6 * i + 2]) / largeForce : 0));
     for (const event of impacts) {
       const age = (time - event.time) / motion.playbackSpeed;
-      if (age < -1e-9 || age > kMoment) continue;
+      if (age < -1e-9 || age > kImpulseShown) continue;
       add(...event.point, ...event.normal, kArrow * Math.max(0.15, event.impulse / largeImpulse));
     }
   }
@@ -328,7 +330,7 @@ function placeArrows(frame, time) {
 }
 
 // Trails: the ways of the centres of mass in the last second of the film.
-const kMostTrails = 40, kTrail = 1;  // bodies; s of film
+const kMaxTrails = 40, kTrail = 1;  // bodies; s of film
 const trails = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x2a4a6a, transparent: true, opacity: 0.8 }));
 trails.frustumCulled = false;
 world.add(trails);
@@ -337,13 +339,13 @@ let showsTrails = false, picked = -1;
 function placeTrails(frame) {
   trails.visible = showsTrails;
   if (!showsTrails) return;
-  const shown = moving.length <= kMostTrails ? moving.map((_, i) => i) : movingIndex.has(picked) ? [movingIndex.get(picked)] : [0];
+  const shown = moving.length <= kMaxTrails ? moving.map((_, i) => i) : movingIndex.has(picked) ? [movingIndex.get(picked)] : [0];
   let first = frame;
   while (first > 0 && times[frame] - times[first - 1] <= kTrail * motion.playbackSpeed) --first;
   const width = kState * moving.length, places = [];
   for (const i of shown)
     for (let k = first; k < frame; ++k)
-      for (const at of [k * width + kState * i, (k + 1) * width + kState * i]) places.push(states[at], states[at + 1], states[at + 2]);
+      for (const at of [k * width + kState * i, (k + 1) * width + kState * i]) places.push(states[at] - origin.x, states[at + 1] - origin.y, states[at + 2] - origin.z);
   trails.geometry.dispose();
   trails.geometry = new THREE.BufferGeometry();
   trails.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(places), 3));
@@ -358,7 +360,7 @@ const heightOf = (from, frame, i) => {
   const at = kState * (frame * moving.length + i);
   return up.x * from[at] + up.y * from[at + 1] + up.z * from[at + 2];
 };
-let showsCurves = true;
+let showsCurves = true, panelCount = 0;
 
 function distances() {
   const far = new Float64Array(frames);
@@ -403,6 +405,7 @@ function drawCurves() {
   page("graphs").classList.toggle("on", showsCurves);
   if (!showsCurves) return;
   const [context, width, height] = sized(curveCanvas), all = panels(), each = width / all.length;
+  panelCount = all.length;
   context.font = "11px 'DejaVu Sans', sans-serif";
   all.forEach((panel, number) => {
     const left = number * each + kMargin, right = (number + 1) * each - 8, top = 16, bottom = height - 4;
@@ -414,7 +417,8 @@ function drawCurves() {
     context.fillStyle = "#45525f";
     context.fillText(panel.title, left, 10);
     context.textAlign = "right";
-    const label = value => panel.isLog ? "1e" + value.toFixed(1) : Math.abs(value) < 1e-6 * (most - least) ? "0" : value.toPrecision(3);
+    const digits = value => Math.min(15, 3 + Math.max(0, Math.floor(Math.log10(Math.abs(value) / (most - least)))));
+    const label = value => panel.isLog ? "1e" + value.toFixed(1) : Math.abs(value) < 1e-6 * (most - least) ? "0" : value.toPrecision(digits(value));
     context.fillText(label(most), left - 4, top + 6), context.fillText(label(least), left - 4, bottom);
     context.textAlign = "left";
     context.strokeStyle = "#aab6c1";
@@ -436,12 +440,12 @@ function drawCurves() {
 let cursorContext = null;
 function drawCursor(time) {
   if (!showsCurves) return;
-  const width = cursorCanvas.clientWidth, height = cursorCanvas.clientHeight, count = other ? 3 : 2, each = width / count;
+  const width = cursorCanvas.clientWidth, height = cursorCanvas.clientHeight, each = width / panelCount;
   if (!cursorContext) [cursorContext] = sized(cursorCanvas);
   cursorContext.clearRect(0, 0, width, height);
   cursorContext.strokeStyle = "#d35400";
   cursorContext.beginPath();
-  for (let number = 0; number < count; ++number) {
+  for (let number = 0; number < panelCount; ++number) {
     const x = number * each + kMargin + (each - kMargin - 8) * shareOf(time);
     cursorContext.moveTo(x, 16), cursorContext.lineTo(x, height - 4);
   }
@@ -571,10 +575,13 @@ function toggle(id, isOn) {
   show(time);
 }
 
-/// The camera as a scene file has it, in the scene's world.
+/// The camera as a scene file has it, in the scene's world: to a hundred thousandth of its distance.
 function cameraText() {
-  const back = turn.clone().conjugate(), round = v => v.applyQuaternion(back).toArray().map(x => +x.toPrecision(6));
-  const text = { position: round(camera.position.clone()), target: round(orbit.target.clone()), verticalFieldOfViewDegrees: +motion.camera.verticalFieldOfView.toPrecision(6) };
+  const back = turn.clone().conjugate(), decimals = Math.max(0, 5 - Math.floor(Math.log10(camera.position.distanceTo(orbit.target))));
+  const numbers = v => v.applyQuaternion(back).toArray().map(x => +x.toFixed(Math.min(decimals, 20)) + 0);
+  const text = { position: numbers(camera.position.clone().add(middle)), target: numbers(orbit.target.clone().add(middle)),
+                 verticalFieldOfViewDegrees: +motion.camera.verticalFieldOfView.toPrecision(6) };
+  if (camera.up.distanceTo(kY) > 1e-6) text.up = camera.up.clone().applyQuaternion(back).toArray().map(x => +x.toFixed(6) + 0);
   return '"camera": ' + JSON.stringify(text);
 }
 
@@ -612,7 +619,9 @@ let pressed = null;
 const canvas = renderer.domElement;
 canvas.addEventListener("pointerdown", event => pressed = [event.clientX, event.clientY]);
 canvas.addEventListener("pointerup", event => {
-  if (pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4) pick(bodyAt(event.clientX, event.clientY));
+  if (event.button === 0 && pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4)
+    pick(bodyAt(event.clientX, event.clientY));
+  pressed = null;
 });
 page("play").onclick = () => { play(!isPlaying); if (!isPlaying) seek(frame); };
 page("back").onclick = () => seek(frame - 1);
@@ -689,7 +698,7 @@ function draw(now) {
   if (isPlaying) {
     const passed = Math.min((now - latest) / 1000, 0.1) * speed * motion.playbackSpeed;
     show(time + passed);
-    if (time >= times[frames - 1]) play(false), show(time);
+    if (time >= times[frames - 1]) seek(frames - 1);
   }
   latest = now;
   renderer.render(scene, camera);
@@ -700,8 +709,8 @@ function draw(now) {
 }
 
 page("time").max = frames - 1;
-page("about").textContent = `${motion.method}; ${frames} frames of ${(times[frames - 1] - times[0]).toPrecision(4)} s` +
-    (other ? `; in red: ${other.name}` : "");
+const length = `${frames} frame${frames === 1 ? "" : "s"} of ${(times[frames - 1] - times[0]).toPrecision(4)} s`;
+page("about").textContent = [motion.method, length, other ? `in red: ${other.name}` : ""].filter(words => words).join("; ");
 setSpeed(1);
 followAddress();
 resize();

@@ -30,7 +30,7 @@ MAY_INCLUDE = {
 LIBRARY_UNITS = {
     "assimp/": ["mesh"],
     "libqhull_r/": ["mesh/convex_hull"],
-    "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file", "commands/plan_scene", "commands/comparison_texts", "commands/player_document", "commands/check_scene", "truth/truth_json", "verify/truth_documents"],
+    "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file", "commands/plan_scene", "commands/comparison_texts", "commands/player_document", "commands/json_numbers", "commands/check_scene", "truth/truth_json", "verify/truth_documents"],
     "CLI/": ["main.cpp"],
     "sqlite3.h": ["trajectory/database"],
     "stb/": ["image/png", "image/font", "mesh/texture"],

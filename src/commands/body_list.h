@@ -8,7 +8,7 @@
 
 namespace cradle {
 
-/// As scene files have it.
+/// The word that scene files have for a motion: "static", "driven" or "dynamic".
 const char* nameOf(Motion motion);
 
 /// What the shape of a body is called, and its size (m) along the axes of the body's frame; a plane has none.
@@ -17,7 +17,7 @@ struct ShapeFacts {
   std::optional<Vec3> size;
 };
 
-/// Of each body.
+/// Of each body, in the order of the scene. O(bodies + vertices of the models).
 std::vector<ShapeFacts> shapesOf(const Scene& scene);
 
 /// A line for each body of a scene with its shape, its size along the axes of its frame and its mass. Bodies that are

@@ -2,17 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <sstream>
 #include <vector>
 
 #include "commands/body_list.h"
+#include "commands/json_numbers.h"
 #include "commands/warnings.h"
 #include "core/console.h"
 #include "core/error.h"
 #include "core/printable.h"
 #include "scene/count_bodies.h"
-#include "scene/fault_list.h"
 #include "simulate/assembly.h"
 #include "simulate/start_overlaps.h"
 #include "simulate/world.h"
@@ -63,13 +65,6 @@ void print(const Scene& scene, const std::string& path) {
   for (const std::string& line : describeBodies(scene)) show("  {}\n", line);
 }
 
-template <class Vector>
-Json numbersOf(const Vector& vector) {
-  Json numbers = Json::array();
-  for (const double number : vector) numbers.push_back(number);
-  return numbers;
-}
-
 Json jsonOf(const Body& body, const ShapeFacts& shape) {
   Json json = {{"name", body.name}, {"motion", nameOf(body.motion)}, {"shape", shape.kind}};
   json["size"] = shape.size ? numbersOf(*shape.size) : Json(nullptr);
@@ -82,10 +77,18 @@ Json jsonOf(const Body& body, const ShapeFacts& shape) {
   return json;
 }
 
+/// The key of a kind of links, as scenes have it: "ballJoints" of "ball joint".
+std::string keyOf(const std::string& noun) {
+  std::string key;
+  for (std::size_t i = 0; i < noun.size(); ++i)
+    if (noun[i] != ' ') key += i > 0 && noun[i - 1] == ' ' ? static_cast<char>(noun[i] - 'a' + 'A') : noun[i];
+  return key + 's';
+}
+
 Json jsonOf(const Scene& scene) {
   Json links = Json::object(), bodies = Json::array();
   forEachKindOfLink(scene, [&](const auto& ofKind) {
-    if (!ofKind.empty()) links[std::string(LinkOf<decltype(ofKind)>::kNoun) + "s"] = ofKind.size();
+    if (!ofKind.empty()) links[keyOf(LinkOf<decltype(ofKind)>::kNoun)] = ofKind.size();
   });
   const std::vector<ShapeFacts> shapes = shapesOf(scene);
   for (std::size_t i = 0; i < shapes.size(); ++i) bodies.push_back(jsonOf(scene.bodies[i], shapes[i]));
@@ -97,16 +100,28 @@ Json jsonOf(const Scene& scene) {
           {"bodies", bodies}};
 }
 
-/// Those of a text each with its place.
-Json faultsOf(const Error& error) {
-  const auto* ofText = dynamic_cast<const TextError*>(&error);
-  if (!ofText) return Json::array({{{"message", error.what()}}});
+/// A line of an error, with the place that it begins with: "FILE:LINE:COLUMN /pointer: what".
+Json faultOf(const std::string& path, const std::string& line) {
+  const std::string file = printableLine(path) + ':';
+  std::uint32_t row = 0, column = 0;
+  const char *end = line.data() + line.size(), *at = line.data() + std::min(file.size(), line.size());
+  const auto toColumn = std::from_chars(at, end, row);
+  if (!line.starts_with(file) || toColumn.ec != std::errc() || toColumn.ptr == end || *toColumn.ptr != ':')
+    return {{"message", line}};
+  const auto toRest = std::from_chars(toColumn.ptr + 1, end, column);
+  const std::string rest(toRest.ptr, end);  // " /pointer: what", or ": what"
+  const std::size_t what = rest.find(": ");
+  if (toRest.ec != std::errc() || what == std::string::npos) return {{"message", line}};
+  return {{"line", row},
+          {"column", column},
+          {"pointer", what > 0 ? rest.substr(1, what - 1) : ""},
+          {"message", rest.substr(what + 2)}};
+}
+
+Json faultsOf(const std::string& path, const Error& error) {
   Json faults = Json::array();
-  for (const TextFault& fault : ofText->faults())
-    faults.push_back({{"line", fault.place.line},
-                      {"column", fault.place.column},
-                      {"pointer", fault.pointer},
-                      {"message", fault.what}});
+  std::istringstream lines(error.what());
+  for (std::string line; std::getline(lines, line);) faults.push_back(faultOf(path, line));
   return faults;
 }
 
@@ -122,7 +137,8 @@ void checkAsJson(const std::string& path, const SceneOptions& options) {
     const Scene scene = loadWhole(path, options);
     printJson(path, warnings, true, jsonOf(scene));
   } catch (const Error& error) {
-    printJson(path, warnings, false, {{"faults", faultsOf(error)}});
+    if (error.kind() == ErrorKind::interrupted) throw;
+    printJson(path, warnings, false, {{"faults", faultsOf(path, error)}});
     throw;
   }
 }

@@ -7,7 +7,8 @@
 namespace cradle {
 
 /// `cradle check SCENE`: loads the scene and its meshes and says what is in it; as JSON with its warnings, and where it
-/// is not in order with its faults. Throws as loading does.
+/// is not in order with what is wrong: faults of its text, or what keeps it from being simulated. Throws as loading
+/// does.
 void checkScene(const std::string& scenePath, const SceneOptions& options, bool asJson);
 
 }  // namespace cradle

@@ -39,15 +39,26 @@ std::string quotedForShell(const std::string& text) {
   return quoted + "'";
 }
 
-/// How pictures that differ become the expected ones; empty where none is there.
+/// How pictures that differ become the expected ones, and missing ones no longer are.
 std::string acceptance(const PictureComparison& found, const ComparedResults& results) {
-  std::vector<std::string> words;
-  for (const ComparedPicture& picture : found.pictures)
-    if (fails(picture) && !isMissing(picture)) words.push_back(quotedForShell(picture.actualPath));
-  if (words.empty()) return "";
-  if (words.size() > kMaxNamed) words = {quotedForShell(results.actual) + "/*.png"};
-  return fmt::format("To accept what you have looked at and found right:\n  cp {} {}\n", fmt::join(words, " "),
-                     quotedForShell(results.expected));
+  std::vector<std::string> drawn, missing;
+  for (const ComparedPicture& picture : found.pictures) {
+    if (isMissing(picture))
+      missing.push_back(quotedForShell(picture.expectedPath));
+    else if (fails(picture))
+      drawn.push_back(quotedForShell(picture.actualPath));
+  }
+  std::string text;
+  if (drawn.size() > kMaxNamed) drawn = {quotedForShell(results.actual) + "/*.png"};
+  if (!drawn.empty())
+    text += fmt::format("To accept what you have looked at and found right:\n  cp -- {} {}\n", fmt::join(drawn, " "),
+                        quotedForShell(results.expected));
+  if (missing.size() > kMaxNamed)
+    text +=
+        fmt::format("Those that are missing are expected as long as they are in {}\n", printableLine(results.expected));
+  else if (!missing.empty())
+    text += fmt::format("To expect what is missing no longer:\n  rm -- {}\n", fmt::join(missing, " "));
+  return text;
 }
 
 std::string describe(const PictureComparison& found, const ComparedResults& results) {
@@ -98,7 +109,10 @@ Json jsonOf(const ComparedPicture& picture) {
   json["visiblePixels"] = found.visiblePixels;
   json["strikingPixels"] = found.strikingPixels;
   json["largestDifference"] = found.largestDifference;
-  json["where"] = {found.where.left, found.where.top, found.where.right, found.where.bottom};
+  json["where"] = {{"left", found.where.left},
+                   {"top", found.where.top},
+                   {"right", found.where.right},
+                   {"bottom", found.where.bottom}};
   return json;
 }
 
@@ -117,14 +131,16 @@ Json jsonOf(const TrajectoryComparison& found) {
                       {"orientation", body.orientation},
                       {"linearVelocity", body.linearVelocity},
                       {"angularVelocity", body.angularVelocity}});
-  Json json = {
-      {"sameStateHash", found.sameStateHash},
-      {"tolerance", found.tolerance},
-      {"frames", {{"expected", found.expectedFrames}, {"actual", found.actualFrames}, {"common", found.commonFrames}}},
-      {"bodies", bodies},
-      {"onlyExpected", found.onlyExpected},
-      {"onlyActual", found.onlyActual},
-      {"worst", nullptr}};
+  Json json = {{"sameStateHash", found.sameStateHash},
+               {"tolerance", found.tolerance},
+               {"frames",
+                {{"expected", found.expectedFrames},
+                 {"actual", found.actualFrames},
+                 {"common", found.sameStateHash ? found.expectedFrames : found.commonFrames}}},
+               {"bodies", bodies},
+               {"onlyExpected", found.onlyExpected},
+               {"onlyActual", found.onlyActual},
+               {"worst", nullptr}};
   if (found.worst.difference > 0)
     json["worst"] = {{"body", found.worst.body},
                      {"quantity", found.worst.quantity},
@@ -147,6 +163,17 @@ std::vector<JunitCase> casesOf(const PictureComparison& found, const ComparedRes
 
 std::vector<JunitCase> casesOf(const TrajectoryComparison& found, const ComparedResults& results) {
   return {{fs::path(results.actual).filename().string(), found.equal ? "" : found.describe()}};
+}
+
+std::string escapedLines(const std::string& text) {
+  std::string lines;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (begin > 0) lines += '\n';
+    lines += escapedMarkup(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
 }
 
 }  // namespace
@@ -181,9 +208,10 @@ std::string junitOf(const ComparedResults& results) {
                   suite, cases.size(), failures);
   for (const JunitCase& test : cases) {
     text += fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0\"", suite, escapedMarkup(test.name));
-    text += test.failure.empty()
-                ? "/>\n"
-                : fmt::format(">\n      <failure message=\"{}\"/>\n    </testcase>\n", escapedMarkup(test.failure));
+    text += test.failure.empty() ? "/>\n"
+                                 : fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
+                                               escapedMarkup(test.failure.substr(0, test.failure.find('\n'))),
+                                               escapedLines(test.failure));
   }
   return text + "  </testsuite>\n</testsuites>\n";
 }

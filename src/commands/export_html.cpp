@@ -1,13 +1,11 @@
 #include "commands/export_html.h"
 
-#include <filesystem>
 #include <map>
 #include <string_view>
 
 #include "commands/embedded_player.h"
 #include "commands/player_document.h"
 #include "commands/trajectory_source.h"
-#include "core/error.h"
 #include "core/interruption.h"
 #include "core/markup.h"
 #include "core/part_file.h"
@@ -38,8 +36,7 @@ void exportHtml(TrajectoryReader reader, const std::optional<TrajectoryReader>& 
   Progress progress("Exporting", "frames", source.frameCount(), quiet);
   std::map<std::string, std::string> parts = embeddedPlayer();
   parts["title"] = escapedMarkup(source.scene().name);
-  const std::string otherName = other ? std::filesystem::path(other->path()).filename().string() : "";
-  parts["motion"] = playerDocument(source, other ? &*other : nullptr, otherName, [&](long done) {
+  parts["motion"] = playerDocument(source, other ? &*other : nullptr, [&](long done) {
     throwIfInterrupted();
     progress.update(done);
   });

@@ -156,13 +156,7 @@ void makeFilm(const std::string& input, const std::string& film, const PictureOp
   TrajectorySource source(input, quiet, {.assetRoot = options.assetRoot});
   const PictureOrder order(options, source.scene());
   source.keepAt(film + ".sqlite");
-  try {
-    drawFilm(source, order, film, quiet);
-  } catch (const Error& error) {
-    const std::string kept = error.kind() == ErrorKind::interrupted ? source.endKept() : "";
-    if (kept.empty()) throw;
-    throw Error(error.kind(), "", fmt::format("{}; the frames simulated up to then are in {}", error.what(), kept));
-  }
+  drawFilm(source, order, film, quiet);
 }
 
 void makeSideBySideFilm(const std::vector<std::string>& inputs, const std::string& film, const PictureOptions& options,

@@ -9,7 +9,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kLinkOfBody = 0.055, kLinkOfScene = 0.002;
+constexpr double kLinkOfBody = 0.055, kLinkOfScene = 0.002;  // of a typical body's radius, of the scene's diagonal
 
 JointPart bar(const std::string& name, int body, const Vec3& from, const Vec3& to, double radius,
               JointPartKind kind = JointPartKind::bar) {
@@ -63,7 +63,7 @@ std::vector<JointPart> jointParts(const Scene& scene, double radius) {
   }
   for (const Weld& weld : scene.welds) {
     parts.push_back(ball(weld.name, weld.anchorA, kBeadOfRod * radius));
-    addArms(scene, weld, kPinOfRod * radius, parts);
+    addArms(scene, weld, kBeadOfRod * radius, parts);
   }
   return parts;
 }

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "commands/run_file.h"
-#include "core/interruption.h"
 #include "core/output_path.h"
 #include "core/part_lock.h"
 #include "simulate/world.h"
@@ -17,7 +16,7 @@ KeptSimulation::KeptSimulation(std::string path, const Scene& scene, bool quiet)
 }
 
 KeptSimulation::~KeptSimulation() {
-  if (interruptingSignal() != 0) return;
+  if (!isOurs_) return;
   std::error_code ignored;
   std::filesystem::remove(part(), ignored);
 }
@@ -26,11 +25,15 @@ std::string KeptSimulation::part() const {
   return partPath(path_);
 }
 
-void KeptSimulation::run(const SimulationSink& told) {
+void KeptSimulation::run(const SimulationSink& told, const std::function<void(long frames)>& skip) {
   World world(scene_);
   RunFile file(path_, scene_, world, false, false);
+  isOurs_ = true;
   if (!quiet_) file.tellOfCheckpoint();
-  file.tellKept(told.frame, told.event);
+  if (skip)
+    skip(file.tellKept([](const Frame&) {}, [](const Event&) {}));
+  else
+    file.tellKept(told.frame, told.event);
   SimulationSink sink = told;
   sink.frame = [&](const Frame& frame) {
     file.writer().append(frame);
@@ -46,6 +49,7 @@ void KeptSimulation::run(const SimulationSink& told) {
     file.writer().append(checkpoint);
   };
   simulate(scene_, world, sink, file.record());
+  file.writer().flush();
 }
 
 }  // namespace cradle

@@ -1,23 +1,26 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "simulate/simulate.h"
 
 namespace cradle {
 
-/// A simulation whose frames are kept in FILE.part, so that after a kill the next one goes on from there. The file goes
-/// with the object, unless a signal ends the program.
+/// A simulation whose frames are kept in FILE.part, so that after a kill (SIGKILL, a lost machine) the next one goes
+/// on from there. The file goes with the object that has simulated.
 class KeptSimulation {
  public:
-  /// FILE is `path`. Keeps a reference to `scene`.
+  /// FILE is `path`. Keeps a reference to `scene`. Throws Error(output) if another run writes FILE.part.
   KeptSimulation(std::string path, const Scene& scene, bool quiet);
   ~KeptSimulation();
   KeptSimulation(const KeptSimulation&) = delete;
   KeptSimulation& operator=(const KeptSimulation&) = delete;
 
-  /// Tells all of the run, what is kept of it first, its warnings in the end of that. Throws what simulate() throws.
-  void run(const SimulationSink& told);
+  /// Simulates, and tells `told` all frames and events: those that FILE.part keeps, then its warnings, then new ones.
+  /// With `skip`, the number of frames kept is told in place of them. At the end all is in FILE.part. Throws
+  /// Error(output) if that cannot be written, and what simulate() throws.
+  void run(const SimulationSink& told, const std::function<void(long frames)>& skip = {});
 
   /// FILE.part.
   std::string part() const;
@@ -26,6 +29,7 @@ class KeptSimulation {
   const std::string path_;
   const Scene& scene_;
   const bool quiet_;
+  bool isOurs_ = false;  // FILE.part
 };
 
 }  // namespace cradle

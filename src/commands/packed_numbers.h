@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -10,9 +11,10 @@ namespace cradle {
 /// Bytes as text that browsers unpack: gzip, then base64.
 std::string packed(std::span<const std::uint8_t> bytes);
 
-/// Numbers in the order of this machine, which is that of browsers.
+/// Numbers, little-endian as typed arrays of browsers are.
 template <class Number>
 std::string packed(const std::vector<Number>& numbers) {
+  static_assert(std::endian::native == std::endian::little);
   return packed({reinterpret_cast<const std::uint8_t*>(numbers.data()), numbers.size() * sizeof(Number)});
 }
 

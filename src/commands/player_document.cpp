@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -11,8 +13,10 @@
 
 #include "commands/film_view.h"
 #include "commands/joint_parts.h"
+#include "commands/json_numbers.h"
 #include "commands/packed_numbers.h"
 #include "core/error.h"
+#include "core/interruption.h"
 #include "core/printable.h"
 #include "render/appearance.h"
 #include "render/body_place.h"
@@ -24,20 +28,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMaxBytes = 256e6;    // of states; a browser holds some 500 MB of text
+constexpr double kMaxBytes = 256e6;    // of states and forces; a browser holds some 500 MB of text
 constexpr double kSameTime = 1e-12;    // of two frames, relative, as in comparisons of trajectories
 constexpr double kCoilOfRod = 5;       // radius of a spring's coil, in those of a rod
 constexpr double kPixelsOfSize = 300;  // how finely round things are divided
 
-template <class Vector>
-Json numbersOf(const Vector& vector) {
-  Json numbers = Json::array();
-  for (const auto number : vector) numbers.push_back(number);
-  return numbers;
+Json poseNumbers(const Vec3& place, const Quat& orientation) {
+  return {place.x(), place.y(), place.z(), orientation.w(), orientation.x(), orientation.y(), orientation.z()};
 }
 
-Json numbersOf(const Vec3& place, const Quat& orientation) {
-  return {place.x(), place.y(), place.z(), orientation.w(), orientation.x(), orientation.y(), orientation.z()};
+void requireFits(const TrajectoryReader& reader, double bytes) {
+  if (bytes > kMaxBytes)
+    throw Error(ErrorKind::limit, reader.path(),
+                fmt::format("has more than a page holds: {:.0f} MB of states, or of forces, and allowed are {:.0f} MB; "
+                            "simulate with fewer frames per second, or export FILE.glb",
+                            bytes / 1e6, kMaxBytes / 1e6));
 }
 
 /// What a thing is painted with.
@@ -60,12 +65,11 @@ class PlayerDocument {
   Json build(const std::function<void(long done)>& progress);
 
   /// Adds another run of the same bodies.
-  void addOther(const TrajectoryReader& other, const std::string& name, Json& document) const;
+  void addOther(const TrajectoryReader& other, Json& document) const;
 
  private:
-  std::vector<double> statesOf(const TrajectoryReader& reader, const std::function<void(long done)>& progress,
-                               std::vector<double>* energies) const;
-  /// Of what B suffers, on the body that moves.
+  static std::vector<double> statesOf(const TrajectoryReader& reader, const std::function<void(const Frame&)>& visit);
+  /// Forces are known as B feels them: 1 if they are shown on B, -1 if on A, as B does not move.
   double signOf(int bodyB) const { return bodyB < 0 || moves(bodyB) ? 1 : -1; }
   bool moves(int body) const { return scene_.bodies[static_cast<std::size_t>(body)].motion != Motion::fixed; }
   Vec3 fromReference(int body, const Vec3& point) const;
@@ -150,6 +154,7 @@ int PlayerDocument::meshShape(const BodyAppearance& look) {
   const bool hasTints = !haveOneColor(look.parts);
   std::string key;
   for (const BodyPart& part : look.parts) {
+    CRADLE_CHECK(part.mesh == look.parts.front().mesh);
     key += fmt::format("{} {} {} ", part.mesh, part.firstTriangle, part.triangleCount);
     const Vec3f tint = paintOf(part.surface).color;
     if (hasTints) key += fmt::format("{} {} {} ", tint.x(), tint.y(), tint.z());
@@ -166,7 +171,7 @@ void PlayerDocument::addThing(int shape, int body, const RigidTransform& bodyFro
                               const Paint& paint, bool hasTints) {
   things_.push_back({{"shape", shape},
                      {"body", body},
-                     {"local", numbersOf(fromReference(body, bodyFromThing.translation), bodyFromThing.rotation)},
+                     {"local", poseNumbers(fromReference(body, bodyFromThing.translation), bodyFromThing.rotation)},
                      {"scale", numbersOf(scale)},
                      {"color", numbersOf(paint.color)},
                      {"pattern", {static_cast<int>(paint.pattern), std::max(paint.cell, 1e-9f), hasTints ? 1 : 0}},
@@ -200,7 +205,7 @@ void PlayerDocument::addBodies() {
     if (moves(number))
       moving_.push_back(number);
     else
-      json["place"] = numbersOf(body.worldFromBody.translation, body.worldFromBody.rotation);
+      json["place"] = poseNumbers(body.worldFromBody.translation, body.worldFromBody.rotation);
     bodies_.push_back(std::move(json));
     addBody(number);
   }
@@ -229,18 +234,15 @@ Json PlayerDocument::endsOf(const Links& links) const {
   return all;
 }
 
+/// The states of all frames, each of which is shown to `visit`.
 std::vector<double> PlayerDocument::statesOf(const TrajectoryReader& reader,
-                                             const std::function<void(long done)>& progress,
-                                             std::vector<double>* energies) const {
+                                             const std::function<void(const Frame&)>& visit) {
   std::vector<double> states;
   for (long number = 0; number < reader.frameCount(); ++number) {
     const Frame frame = reader.readFrame(number);
     for (const BodyState& state : frame.states)
       for (const double x : stateNumbers(state)) states.push_back(x);
-    if (energies)
-      energies->insert(energies->end(),
-                       {frame.energy.kinetic, frame.energy.potential, frame.energy.dissipated, frame.energy.work});
-    progress(number + 1);
+    visit(frame);
   }
   return states;
 }
@@ -269,6 +271,7 @@ void PlayerDocument::addForces(Json& document) const {
         for (const double x : wrench.force) forces.push_back(static_cast<float>(signOf(wrench.bodyB) * x));
         for (const double x : wrench.point) forces.push_back(static_cast<float>(x));
       }
+    requireFits(reader_, static_cast<double>(sizeof(float) * forces.size()));
     first.push_back(static_cast<std::uint32_t>(forces.size() / 6));
   }
   document["forces"] = packed(forces), document["firstForces"] = packed(first);
@@ -304,9 +307,12 @@ double PlayerDocument::coilLength() const {
 
 Json PlayerDocument::build(const std::function<void(long done)>& progress) {
   std::vector<double> energies;
-  const std::vector<double> states = statesOf(reader_, progress, &energies);
-  if (!scene_.sliders.empty())
-    for (long number = 0; number < reader_.frameCount(); ++number) include(reader_.readFrame(number), scene_, reach_);
+  const std::vector<double> states = statesOf(reader_, [&](const Frame& frame) {
+    const EnergyBalance& energy = frame.energy;
+    energies.insert(energies.end(), {energy.kinetic, energy.potential, energy.dissipated, energy.work});
+    include(frame, scene_, reach_);
+    progress(frame.number + 1);
+  });
   addBodies();
   const double radius = linkRadius(scene_, view_.bounds);
   addJoints(radius);
@@ -336,7 +342,7 @@ Json PlayerDocument::build(const std::function<void(long done)>& progress) {
   return document;
 }
 
-void PlayerDocument::addOther(const TrajectoryReader& other, const std::string& name, Json& document) const {
+void PlayerDocument::addOther(const TrajectoryReader& other, Json& document) const {
   const auto namesOf = [](const TrajectoryReader& reader) {
     std::vector<std::string> names;
     for (const BodyRecord& body : reader.header().bodies)
@@ -350,32 +356,26 @@ void PlayerDocument::addOther(const TrajectoryReader& other, const std::string& 
   if (!std::ranges::equal(reader_.frameTimes(), other.frameTimes(), isSame))
     throw Error(ErrorKind::usage, other.path(),
                 fmt::format("has frames at other times than {}; one page shows runs with the same", reader_.path()));
-  document["other"] = {{"name", name},
-                       {"states", packed(statesOf(
-                                      other, [](long) {}, nullptr))}};
+  document["other"] = {{"name", std::filesystem::path(other.path()).filename().string()},
+                       {"states", packed(statesOf(other, [](const Frame&) { throwIfInterrupted(); }))}};
 }
 
-void requireFits(const TrajectoryReader& reader) {
+/// Before memory is taken for them.
+void requireStatesFit(const TrajectoryReader& reader, int runs) {
   if (reader.frameCount() == 0) throw Error(ErrorKind::usage, reader.path(), "has no frames yet");
   const auto& bodies = reader.header().bodies;
   const auto moving = std::ranges::count_if(bodies, [](const BodyRecord& body) { return body.hasStates(); });
-  const double bytes = sizeof(double) * 13.0 * static_cast<double>(moving) * static_cast<double>(reader.frameCount());
-  if (bytes > kMaxBytes)
-    throw Error(
-        ErrorKind::limit, reader.path(),
-        fmt::format("has {} states of bodies, {:.0f} MB, and a page holds {:.0f} MB; simulate with fewer frames "
-                    "per second, or export FILE.glb",
-                    moving * reader.frameCount(), bytes / 1e6, kMaxBytes / 1e6));
+  requireFits(reader, 8.0 * 13 * runs * static_cast<double>(moving) * static_cast<double>(reader.frameCount()));
 }
 
 }  // namespace
 
-std::string playerDocument(TrajectorySource& source, const TrajectoryReader* other, const std::string& otherName,
+std::string playerDocument(TrajectorySource& source, const TrajectoryReader* other,
                            const std::function<void(long done)>& progress) {
-  requireFits(source.reader());
+  requireStatesFit(source.reader(), other ? 2 : 1);
   PlayerDocument player(source);
   Json document = player.build(progress);
-  if (other) player.addOther(*other, otherName, document);
+  if (other) player.addOther(*other, document);
   std::string text;
   for (const char c : document.dump(-1, ' ', true, Json::error_handler_t::replace))
     c == '<' ? text += "\\u003c" : text += c;

@@ -10,14 +10,11 @@
 
 namespace cradle {
 
-/// Tells the fingerprint of a run, for its checkpoints; without one none are kept.
-using Fingerprint = std::function<std::string()>;
-
 /// The unfinished trajectory FILE.part of a run: begun, or gone on with from its checkpoint if it is of an ended run of
 /// the same scene, with the same options and program.
 class RunFile {
  public:
-  /// Keeps references to scene and world, which is at its start. Throws as TrajectoryWriter does.
+  /// Keeps a reference to `scene`; `world` is at its start, and only its plan is read. Throws as TrajectoryWriter does.
   RunFile(const std::string& output, const Scene& scene, const World& world, bool isStrict, bool isFresh);
 
   TrajectoryWriter& writer() { return *writer_; }
@@ -29,8 +26,9 @@ class RunFile {
   void tellOfCheckpoint(const std::string& hint = "") const;
 
   /// Tells what there is up to the checkpoint, events before the frame of their instant. Returns the number of frames;
-  /// 0 without a checkpoint. To be called once, before anything is written.
-  long tellKept(const std::function<void(const Frame&)>& frame, const std::function<void(const Event&)>& event);
+  /// 0 without a checkpoint. To be called once, before anything is written. Throws Error(interrupted), and what reading
+  /// throws.
+  long tellKept(const std::function<void(const Frame&)>& tellFrame, const std::function<void(const Event&)>& tellEvent);
 
   /// Of the checkpoint, for simulate(); empty without one.
   std::string record() const { return from_ ? from_->record : ""; }

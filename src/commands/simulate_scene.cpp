@@ -113,6 +113,9 @@ void checkAccuracy(const Scene& scene, const std::string& output, bool prints, b
   }
 }
 
+/// Tells the fingerprint of a run, for its checkpoints; without one none are kept.
+using Fingerprint = std::function<std::string()>;
+
 /// A simulation into a trajectory file.
 class FileRun {
  public:

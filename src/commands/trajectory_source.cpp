@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "commands/simulate_scene.h"
 #include "commands/warnings.h"
@@ -156,11 +155,6 @@ void TrajectorySource::keepAt(const std::string& path) {
   if (!reader_) kept_.emplace(path, scene_, quiet_);
 }
 
-std::string TrajectorySource::endKept() {
-  stream_.reset();
-  return kept_ && std::filesystem::exists(kept_->part()) ? kept_->part() : "";
-}
-
 /// As simulate(), into the file that is kept.
 void TrajectorySource::simulateKept() {
   Progress progress("Simulating", "frames", frameCount_, quiet_);
@@ -170,7 +164,7 @@ void TrajectorySource::simulateKept() {
                         cradle::warn(warning);
                       }};
   sink.reached = [&](double time) { progress.showTime(time); };
-  kept_->run(sink);
+  kept_->run(sink, [&](long frames) { progress.skipTo(frames); });
   progress.endLine();
   open(TrajectoryReader(kept_->part()));
 }

@@ -46,11 +46,9 @@ class TrajectorySource {
   /// Known before the simulation, too.
   long frameCount() const { return frameCount_; }
 
-  /// What is simulated of a scene is kept in PATH.part while this object lives: see KeptSimulation.
+  /// What is simulated of a scene is kept in PATH.part while this object lives: see KeptSimulation, which throws. To be
+  /// called before simulate() or simulateBeside().
   void keepAt(const std::string& path);
-
-  /// Ends a simulation that was interrupted. Returns the file that keeps it; empty without one.
-  std::string endKept();
 
   /// Simulates the scene; with a trajectory there is nothing to do. To be called once, before frames are read.
   void simulate();

@@ -7,8 +7,11 @@
 namespace cradle {
 
 std::string escapedMarkup(std::string_view text) {
+  // Of what is printable, XML 1.0 has no place for U+FFFE and U+FFFF.
+  constexpr std::string_view kNoCharacter = "\xef\xbf";
   std::string result;
-  for (const char c : printableLine(text)) switch (c) {
+  const std::string shown = printableLine(text);
+  for (std::size_t i = 0; i < shown.size(); ++i) switch (shown[i]) {
       case '&':
         result += "&amp;";
         break;
@@ -22,7 +25,12 @@ std::string escapedMarkup(std::string_view text) {
         result += "&quot;";
         break;
       default:
-        result += c;
+        if (shown.compare(i, 2, kNoCharacter) == 0 && i + 2 < shown.size() && shown[i + 2] >= '\xbe') {
+          result += shown[i + 2] == '\xbe' ? "\\ufffe" : "\\uffff";
+          i += 2;
+        } else {
+          result += shown[i];
+        }
     }
   return result;
 }

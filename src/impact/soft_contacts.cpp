@@ -80,8 +80,8 @@ void SoftContacts::goOnFrom(const std::vector<Record>& records) {
   for (const Record& record : records) {
     const auto order = orderOf(record.a, record.b, record.isAgainstPlane);
     next = std::find_if(next, pairs_.end(), [&](const NearPair& pair) { return !(orderOf(pair) < order); });
-    if (next == pairs_.end()) return;
-    if (orderOf(*next) != order) continue;  // they have parted
+    if (next == pairs_.end()) return;       // those behind have parted, too
+    if (orderOf(*next) != order) continue;  // they have parted: the broad phase finds them near no more
     giveManifold(*next);
     PersistentManifold& manifold = manifolds_[static_cast<std::size_t>(next->manifold)];
     const ContactMaterial* material = manifold.material;

@@ -61,14 +61,15 @@ class SoftContacts {
   struct Record {
     std::uint64_t a = 0, b = 0;  // of the collider pair
     bool isAgainstPlane = false;
-    float approach = 0;
-    Vec3 offset = Vec3::Zero();
-    double turned = 0;  // rad, of both since its manifold was found
+    float approach = 0;          // m/s, as of NearPair
+    Vec3 offset = Vec3::Zero();  // m, world, from A to B when its manifold was found
+    double turned = 0;           // rad, of both since then
     PersistentManifold manifold;
   };
+  /// Of all pairs in contact, in the order of pairs; `poses` are those of the last look.
   std::vector<Record> record(const std::vector<MovingPose>& poses) const;
 
-  /// Takes the contacts of a record among the pairs that were taken last; poses have not turned since.
+  /// To be called right after takePairs(), for poses that have not turned so far.
   void goOnFrom(const std::vector<Record>& records);
 
   /// Calls visit(a, b) for each two moving bodies that are in contact, sleepers too.

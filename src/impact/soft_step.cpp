@@ -85,7 +85,7 @@ SoftStep::SoftStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
   speeds_.assign(count, 0);
 }
 
-double SoftStep::mostMargin() const {
+double SoftStep::maxMargin() const {
   using Soft = SoftParameters;
   return scale_.length * (Soft::kContactMargin + Soft::kDeflected * Soft::kMaxApproach);
 }
@@ -101,8 +101,8 @@ void SoftStep::advance(double timeStep, VectorX& state) {
   // How fast do bodies approach each other, and how often must they be looked at for that?
   placeBodies(timeStep, state);
   const double maxApproach = scale_.length * Soft::kMaxApproach, margin = scale_.length * Soft::kContactMargin;
-  if (broadPhase_.update({state, reaches_, displacements_}, mostMargin(), geometry_)) contacts_.takePairs();
-  const double approach = timeStep * contacts_.fastestApproach({poses_, state, timeStep, mostMargin()}, threads_);
+  if (broadPhase_.update({state, reaches_, displacements_}, maxMargin(), geometry_)) contacts_.takePairs();
+  const double approach = timeStep * contacts_.fastestApproach({poses_, state, timeStep, maxMargin()}, threads_);
   const int substepGroups = std::clamp(static_cast<int>(std::ceil(approach / maxApproach)), 1, Soft::kMaxSubstepGroups);
   const double groupApproach = std::min(approach / substepGroups, maxApproach);
   const int fewest = static_cast<int>(std::ceil(groupApproach / (scale_.length * Soft::kMaxSubStepApproach)));
@@ -311,7 +311,7 @@ void SoftStep::goOnFrom(const Record& record, const VectorX& state) {
     placeBody(i, state);
     if (sleep_.isAsleep(i)) putToSleep(i);
   }
-  broadPhase_.update({state, reaches_, displacements_}, mostMargin(), geometry_);
+  broadPhase_.update({state, reaches_, displacements_}, maxMargin(), geometry_);
   contacts_.takePairs();
   contacts_.goOnFrom(record.contacts);
 }

@@ -67,7 +67,7 @@ class SoftStep {
  private:
   void placeBodies(double timeStep, const VectorX& state);
   void putToSleep(std::size_t body);
-  double mostMargin() const;  // m: what may be in contact within a step is nearer than that
+  double maxMargin() const;  // m: pairs farther apart do not touch within a step
   void placeBody(std::size_t index, const VectorX& state);
   SolverBody solverBody(std::size_t index) const;
   SolverBody stillBody(std::size_t index) const;

@@ -18,23 +18,23 @@ constexpr std::size_t kLongestPointer = 200;   // bytes
 
 }  // namespace
 
-std::string FaultList::lineOf(const TextFault& fault) const {
-  return where(fault.place, fault.pointer) + ": " + printableLine(fault.what, kLongestWhat);
+FaultList::Fault FaultList::faultOf(const TextPlace& place, const std::string& pointer, const std::string& what) const {
+  return {place, where(place, pointer) + ": " + printableLine(what, kLongestWhat)};
 }
 
 std::size_t FaultList::add(const TextPlace& place, const std::string& pointer, const std::string& what) {
-  if (!isFull()) faults_.push_back({place, pointer, what});
+  if (!isFull()) faults_.push_back(faultOf(place, pointer, what));
   if (++count_ == kMaxCounted) throwIfAny();
   return count_ - 1;
 }
 
 void FaultList::replace(std::size_t number, const TextPlace& place, const std::string& pointer,
                         const std::string& what) {
-  if (number < faults_.size()) faults_[number] = {place, pointer, what};
+  if (number < faults_.size()) faults_[number] = faultOf(place, pointer, what);
 }
 
 void FaultList::warn(const TextPlace& place, const std::string& pointer, const std::string& what) {
-  warnings_.push_back(lineOf({place, pointer, what}));
+  warnings_.push_back(faultOf(place, pointer, what).line);
 }
 
 bool FaultList::isFull() const {
@@ -48,18 +48,15 @@ std::string FaultList::where(const TextPlace& place, const std::string& pointer)
 
 void FaultList::throwIfAny() const {
   if (count_ == 0) return;
-  std::vector<TextFault> sorted = faults_;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const TextFault& a, const TextFault& b) {
+  std::vector<Fault> sorted = faults_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Fault& a, const Fault& b) {
     return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
   });
   std::string text;
-  for (const TextFault& fault : sorted) {
-    if (!text.empty()) text += '\n';
-    text += lineOf(fault);
-  }
+  for (const Fault& fault : sorted) text += (text.empty() ? "" : "\n") + fault.line;
   if (count_ > sorted.size())
     text += fmt::format("\nand {}{} more", count_ == kMaxCounted ? "at least " : "", count_ - sorted.size());
-  throw TextError(Error::ofLines(kind_, text), std::move(sorted));
+  throw Error::ofLines(kind_, text);
 }
 
 std::string inQuotes(const std::string& text) {

@@ -2,30 +2,12 @@
 
 #include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/error.h"
 #include "scene/text_place.h"
 
 namespace cradle {
-
-/// A fault in a text: at `pointer`, a JSON pointer, empty for the whole text.
-struct TextFault {
-  TextPlace place;
-  std::string pointer, what;
-};
-
-/// What is wrong with a text, in the order of the text.
-class TextError : public Error {
- public:
-  TextError(const Error& error, std::vector<TextFault> faults) : Error(error), faults_(std::move(faults)) {}
-
-  const std::vector<TextFault>& faults() const { return faults_; }
-
- private:
-  std::vector<TextFault> faults_;
-};
 
 /// What is wrong with a scene file, so that its writer hears of it in one go; of a file of millions of faults the first
 /// thousand. And its warnings: what is allowed, and may not be what its writer means.
@@ -53,15 +35,19 @@ class FaultList {
   /// "FILE:LINE:COLUMN /json/pointer"
   std::string where(const TextPlace& place, const std::string& pointer) const;
 
-  /// Throws one TextError with a line for each fault in the order of the file, and how many more there were.
+  /// Throws one Error with a line for each fault in the order of the file, and how many more there were.
   void throwIfAny() const;
 
  private:
-  std::string lineOf(const TextFault& fault) const;
+  struct Fault {
+    TextPlace place;
+    std::string line;
+  };
+  Fault faultOf(const TextPlace& place, const std::string& pointer, const std::string& what) const;
 
   std::string file_;
   ErrorKind kind_;
-  std::vector<TextFault> faults_;
+  std::vector<Fault> faults_;
   std::vector<std::string> warnings_;
   std::size_t count_ = 0;
 };

@@ -132,8 +132,8 @@ void visit(Archive& archive, Visited<Archive, ContactWrench>& wrench) {
 }
 
 template <class Archive>
-void visit(Archive& archive, Visited<Archive, SoftSubsteps::Record>& pile) {
-  archive(pile.time, pile.state, pile.step, pile.startEnergy, pile.hasSleepChanged, pile.atRest);
+void visit(Archive& archive, Visited<Archive, SoftSubsteps::Record>& heap) {
+  archive(heap.time, heap.state, heap.step, heap.startEnergy, heap.hasSleepChanged, heap.atRest);
 }
 
 template <class Archive>
@@ -153,7 +153,7 @@ void visit(Archive& archive, Visited<Archive, HardSpheres::Record>& spheres) {
 
 template <class Archive>
 void visit(Archive& archive, Visited<Archive, WorldRecord>& world) {
-  archive(world.time, world.frame, world.islands, world.groups, world.spheres, world.piles, world.promiseEnds,
+  archive(world.time, world.frame, world.islands, world.groups, world.spheres, world.softIslands, world.promiseEnds,
           world.isToldOf, world.corrections, world.evaluations);
 }
 

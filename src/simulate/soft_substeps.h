@@ -16,17 +16,17 @@ namespace cradle {
 class SoftSubsteps {
  public:
   /// Steps end at the times asked for, and are no longer than `longestStep` (s), of small bodies by their SoftScale.
-  /// Without `threads`, large heaps take as
-  /// many as the machine has; the result is the same for any number.
+  /// Without `threads`, large heaps take as many as the machine has; the result is the same for any number.
   SoftSubsteps(Assembly assembly, double longestStep, std::optional<int> threads = std::nullopt);
-  /// What goes on beside the assembly; it begins where one ended.
+
+  /// All that a run needs beside the assembly to go on.
   struct Record {
     double time = 0;  // s
     VectorX state;
     SoftStep::Record step;
     double startEnergy = 0;  // J
     bool hasSleepChanged = false;
-    std::map<std::pair<int, int>, ContactWrench> atRest;
+    std::map<std::pair<int, int>, ContactWrench> atRest;  // by scene bodies
   };
   /// Goes on from a record.
   SoftSubsteps(Assembly assembly, double longestStep, const Record& record);
@@ -56,7 +56,7 @@ class SoftSubsteps {
   std::vector<Event> takeEvents();
 
  private:
-  static constexpr long kWorkOfDetection = 1500;
+  static constexpr long kWorkOfDetection = 1500;  // 2000 looks for contacts between checkpoints (kCheckpointWork)
   void takeStep(double timeStep);
   bool isAwake(int sceneBody) const;
   bool isStill(const ColliderPair& pair) const;

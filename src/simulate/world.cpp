@@ -100,7 +100,7 @@ void World::move(std::size_t index, Assembly assembly) {
       return;
     case MotionKind::pile:
       softIslands_.push_back(std::make_unique<SoftSubsteps>(std::move(assembly), island.method.timeStep));
-      islandOfPile_.push_back(index);
+      islandOfSoftIsland_.push_back(index);
       return;
     case MotionKind::fixedSteps:
     case MotionKind::errorSteps:
@@ -285,7 +285,7 @@ WorldRecord World::record() const {
   for (const auto& solver : solvers_) record.islands.push_back(solver->record());
   for (const auto& group : groups_) record.groups.push_back(group->record());
   for (const auto& spheres : spheres_) record.spheres.push_back(spheres->record());
-  for (const auto& pile : softIslands_) record.piles.push_back(pile->record());
+  for (const auto& pile : softIslands_) record.softIslands.push_back(pile->record());
   record.promiseEnds = promiseEnds_, record.isToldOf = isToldOf_;
   record.corrections = before_.corrections;
   forEachSolver([&](auto& solver, std::size_t) {
@@ -327,9 +327,9 @@ void World::goOnFrom(const WorldRecord& record) {
                                                 record.spheres.at(i));
   }
   for (std::size_t i = 0; i < softIslands_.size(); ++i) {
-    const IslandPlan& island = plan_.islands[islandOfPile_[i]];
+    const IslandPlan& island = plan_.islands[islandOfSoftIsland_[i]];
     softIslands_[i] =
-        std::make_unique<SoftSubsteps>(assemble(scene_, island), island.method.timeStep, record.piles.at(i));
+        std::make_unique<SoftSubsteps>(assemble(scene_, island), island.method.timeStep, record.softIslands.at(i));
   }
 }
 

@@ -111,10 +111,10 @@ class World {
   std::vector<std::unique_ptr<IslandSolver>> solvers_;
   long evaluationsOfFrame_ = 0;  // of solvers, in the last one
   std::vector<std::unique_ptr<IslandGroup>> groups_;
-  std::vector<std::size_t> islandOfSolver_, islandOfGroup_, islandOfSpheres_, islandOfPile_;  // of the plan
-  std::vector<std::optional<PromiseEnd>> promiseEnds_;                                        // by island
-  std::vector<PromiseEnd> newEnds_;                                                           // not yet taken
-  std::vector<std::string> warnings_;                                                         // not yet taken
+  std::vector<std::size_t> islandOfSolver_, islandOfGroup_, islandOfSpheres_, islandOfSoftIsland_;  // of the plan
+  std::vector<std::optional<PromiseEnd>> promiseEnds_;                                              // by island
+  std::vector<PromiseEnd> newEnds_;                                                                 // not yet taken
+  std::vector<std::string> warnings_;                                                               // not yet taken
   std::vector<FlyingIsland> flying_;
   std::vector<std::unique_ptr<HardSpheres>> spheres_;
   std::vector<std::unique_ptr<SoftSubsteps>> softIslands_;

@@ -58,10 +58,10 @@ struct GroupRecord {
 struct WorldRecord {
   double time = 0;  // s
   long frame = 0;
-  std::vector<IslandRecord> islands;  // in the order of the plan
-  std::vector<GroupRecord> groups;    // the same
-  std::vector<HardSpheres::Record> spheres;
-  std::vector<SoftSubsteps::Record> piles;
+  std::vector<IslandRecord> islands;         // in the order of the plan
+  std::vector<GroupRecord> groups;           // the same
+  std::vector<HardSpheres::Record> spheres;  // the same
+  std::vector<SoftSubsteps::Record> softIslands;
   std::vector<std::optional<PromiseEnd>> promiseEnds;
   std::array<char, kCorrectionKinds> isToldOf = {};
   std::array<long, kCorrectionKinds> corrections = {};

@@ -53,6 +53,9 @@ class TrajectoryWriter {
 
   bool hasFrame() const { return framesAppended_ > 0; }
 
+  /// Lets readers of FILE.part see all that was appended. Throws Error(output).
+  void flush();
+
   /// Completes the file and gives it its name, if it is to have one. There must be a frame. Throws Error(output).
   void finish(const RunCost& cost);
 

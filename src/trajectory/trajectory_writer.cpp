@@ -464,6 +464,13 @@ void TrajectoryWriter::commitIfDue() {
   beginTransaction();
 }
 
+void TrajectoryWriter::flush() {
+  CRADLE_CHECK(session_ && transactionWhole_);
+  session_->database->commit();
+  framesCommitted_ = framesAppended_;
+  beginTransaction();
+}
+
 void TrajectoryWriter::finish(const RunCost& cost) {
   CRADLE_CHECK(session_ && transactionWhole_ && framesAppended_ > 0);
   session_->database->execute("DELETE FROM checkpoint");

@@ -1,5 +1,5 @@
 """A browser without a screen, led by the WebDriver protocol (W3C) through chromedriver."""
-import base64, json, os, signal, socket, subprocess, time, urllib.error, urllib.request
+import base64, json, os, signal, socket, subprocess, time, urllib.request
 
 PATIENCE = 60  # s
 # Chromium's own software renderer; without a sandbox, which root has none of.
@@ -14,6 +14,13 @@ class Browser:
             self.port = free.getsockname()[1]
         self.driver = subprocess.Popen(["chromedriver", f"--port={self.port}"], stdout=subprocess.DEVNULL,
                                        stderr=subprocess.DEVNULL, start_new_session=True)
+        try:
+            self.begin()
+        except BaseException:
+            self.end_driver()
+            raise
+
+    def begin(self):
         self.wait_until(self.answers)
         capabilities = {"browserName": "chrome", "goog:chromeOptions": {"args": OPTIONS}, "goog:loggingPrefs": {"browser": "ALL"}}
         self.session = "/session/" + self.call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})["sessionId"]
@@ -21,7 +28,7 @@ class Browser:
     def answers(self):
         try:
             return self.call("GET", "/status")["ready"]
-        except urllib.error.URLError:
+        except OSError:
             return False
 
     @staticmethod
@@ -73,5 +80,8 @@ class Browser:
         try:
             self.call("DELETE", self.session)
         finally:
-            os.killpg(self.driver.pid, signal.SIGKILL)
-            self.driver.wait()
+            self.end_driver()
+
+    def end_driver(self):
+        os.killpg(self.driver.pid, signal.SIGKILL)
+        self.driver.wait()

@@ -10,8 +10,8 @@ from browser import Browser
 PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 RIGHT, LEFT, END = "\ue014", "\ue012", "\ue010"  # keys, as WebDriver names them
 STATE = ["px_m", "py_m", "pz_m", "qw", "qx", "qy", "qz", "vx_m_s", "vy_m_s", "vz_m_s", "wx_rad_s", "wy_rad_s", "wz_rad_s"]
-MOST_CALLS = 20
-MOST_BYTES = 5_000_000  # of the page of Newton's cradle
+MAX_CALLS = 20
+MAX_BYTES = 5_000_000  # of the page of Newton's cradle
 HOSTILE = "</script><script>document.title=\"it ran\"</script>&{{title}}"
 
 
@@ -77,7 +77,7 @@ class Pages(unittest.TestCase):
         self.assertEqual((data["frame"], data["body"]), (str(frame), body))
         self.assertEqual(json.loads(data["state"]), [float(row[column]) for column in STATE])
 
-    def pixels(self):
+    def color_count(self):
         """How many colours the picture has."""
         return self.browser.run("""
             const canvas = document.createElement("canvas"), picture = document.getElementById("picture");
@@ -90,11 +90,11 @@ class Pages(unittest.TestCase):
     def test_newtons_cradle(self):
         trajectory = self.simulate(os.path.join(SOURCE, "scenes", "newtons_cradle.json"))
         page = self.exported(trajectory)
-        self.assertLess(os.path.getsize(page), MOST_BYTES)
+        self.assertLess(os.path.getsize(page), MAX_BYTES)
         self.require_states_of_table(trajectory, page, 37, "ball5")
         self.assertEqual(self.browser.run("return performance.getEntriesByType('resource').length"), 0)  # needs nothing else
-        self.assertLessEqual(int(self.browser.data()["calls"]), MOST_CALLS)
-        self.assertGreater(self.pixels(), 1000)
+        self.assertLessEqual(int(self.browser.data()["calls"]), MAX_CALLS)
+        self.assertGreater(self.color_count(), 1000)
 
     def test_it_plays(self):
         page = self.exported(self.simulate(document([FLOOR, ball()])))
@@ -137,7 +137,7 @@ class Pages(unittest.TestCase):
         for body in ("body3", "body4", "hung5"):
             self.require_states_of_table(trajectory, page, 20, body)
         self.browser.press("f"), self.browser.press("t")
-        self.assertLessEqual(int(self.browser.data()["calls"]), MOST_CALLS)
+        self.assertLessEqual(int(self.browser.data()["calls"]), MAX_CALLS)
         self.assertEqual(self.browser.log(), [])
 
     def test_bodies_of_one_shape_are_drawn_at_once(self):

@@ -130,9 +130,9 @@ auto ofIslands(const Lose& lose) {
 }
 
 template <class Lose>
-auto ofPiles(const Lose& lose) {
+auto ofSoftIslands(const Lose& lose) {
   return [lose](RunRecord& run) {
-    for (SoftSubsteps::Record& pile : run.world.piles) lose(pile);
+    for (SoftSubsteps::Record& heap : run.world.softIslands) lose(heap);
   };
 }
 
@@ -195,19 +195,19 @@ std::vector<Loss> losses() {
        [](RunRecord& run) {
          for (HardSpheres::Record& spheres : run.world.spheres) spheres.origin = spheres.originRest = 0;
        }},
-      {"piles' sleep", kHeap, ofPiles([](SoftSubsteps::Record& pile) {
-         pile.step.sleep.isAsleep.assign(pile.step.sleep.isAsleep.size(), 0);
+      {"heaps' sleep", kHeap, ofSoftIslands([](SoftSubsteps::Record& heap) {
+         heap.step.sleep.isAsleep.assign(heap.step.sleep.isAsleep.size(), 0);
        })},
-      {"piles' still times", kHeap, ofPiles([](SoftSubsteps::Record& pile) {
-         pile.step.sleep.stillTimes.assign(pile.step.sleep.stillTimes.size(), 0.0);
+      {"heaps' still times", kHeap, ofSoftIslands([](SoftSubsteps::Record& heap) {
+         heap.step.sleep.stillTimes.assign(heap.step.sleep.stillTimes.size(), 0.0);
        })},
-      {"piles' contacts", kHeap, ofPiles([](SoftSubsteps::Record& pile) { pile.step.contacts.clear(); })},
-      {"piles' forces", kHeap, ofPiles([](SoftSubsteps::Record& pile) {
-         for (SoftContacts::Record& contact : pile.step.contacts) contact.manifold.forces.fill(0);
+      {"heaps' contacts", kHeap, ofSoftIslands([](SoftSubsteps::Record& heap) { heap.step.contacts.clear(); })},
+      {"heaps' forces", kHeap, ofSoftIslands([](SoftSubsteps::Record& heap) {
+         for (SoftContacts::Record& contact : heap.step.contacts) contact.manifold.forces.fill(0);
        })},
-      {"piles' disturbance", kHeap,
-       ofPiles([](SoftSubsteps::Record& pile) { pile.step.isDisturbed = !pile.step.isDisturbed; })},
-      {"piles' loads at rest", kHeap, ofPiles([](SoftSubsteps::Record& pile) { pile.atRest.clear(); })},
+      {"heaps' disturbance", kHeap,
+       ofSoftIslands([](SoftSubsteps::Record& heap) { heap.step.isDisturbed = !heap.step.isDisturbed; })},
+      {"heaps' loads at rest", kHeap, ofSoftIslands([](SoftSubsteps::Record& heap) { heap.atRest.clear(); })},
       {"ledger", bouncing, ofIslands([](IslandRecord& island) { island.state.tail<kLedgerSize>().setZero(); })},
       {"joints", turning,
        ofIslands([](IslandRecord& island) { island.joints.assign(island.joints.size(), JointState{}); })},

@@ -18,10 +18,11 @@ class HardSpheres {
   /// Keeps a reference to `scene`, whose island this is.
   HardSpheres(const Scene& scene, Assembly assembly, SphereWorld world);
 
+  /// All that a run needs beside scene and assembly to go on; `origin`, `originRest` and `time` are as below.
   struct Record {
     VectorX state;
     std::vector<SphereFlights::Record> flights;
-    double origin = 0, originRest = 0, time = 0;  // s, see below
+    double origin = 0, originRest = 0, time = 0;  // s
   };
   /// Goes on from a record: predictions are made anew.
   HardSpheres(const Scene& scene, Assembly assembly, SphereWorld world, const Record& record);
@@ -37,7 +38,7 @@ class HardSpheres {
 
   const Assembly& assembly() const { return assembly_; }
 
-  /// All events were taken.
+  /// To be called when all events were taken.
   Record record() const { return {state_, flights_.record(), origin_, originRest_, time_}; }
 
   /// As IslandSolver's.
