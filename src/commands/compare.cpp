@@ -118,19 +118,6 @@ PictureComparison comparePictures(std::vector<ComparedPicture> pictures, const C
   return found;
 }
 
-/// One of many that cannot be read is one that differs.
-PictureComparison compareFolders(const std::string& expected, const std::string& actual,
-                                 const CompareOptions& options) {
-  PictureComparison found{pairPictures(expected, actual), parseLimits(options)};
-  for (ComparedPicture& picture : found.pictures) try {
-      comparePair(picture, found.limits);
-    } catch (const Error& error) {
-      if (error.kind() != ErrorKind::usage) throw;
-      picture.comparison.sentence = error.what();
-    }
-  return found;
-}
-
 TrajectoryComparison compareTrajectoryFiles(const std::string& expected, const std::string& actual,
                                             const CompareOptions& options) {
   if (options.report) throw Error(ErrorKind::usage, "--report", "shows pictures; these are trajectories");
@@ -143,7 +130,7 @@ ComparedResults compareAny(const std::string& expected, const std::string& actua
   for (const std::string& path : {expected, actual}) requireFileOrFolder(path, ErrorKind::usage);
   if (fs::is_directory(expected) != fs::is_directory(actual))
     throw Error(ErrorKind::usage, actual, "a folder can only be compared with a folder");
-  if (fs::is_directory(expected)) return {expected, actual, compareFolders(expected, actual, options)};
+  if (fs::is_directory(expected)) return {expected, actual, comparePictures(pairPictures(expected, actual), options)};
   if (isDatabaseFile(expected) || isDatabaseFile(actual))
     return {expected, actual, compareTrajectoryFiles(expected, actual, options)};
   const std::string name = fs::path(actual).filename().string();

@@ -63,17 +63,23 @@ std::string acceptance(const PictureComparison& found, const ComparedResults& re
 
 std::string describe(const PictureComparison& found, const ComparedResults& results) {
   std::string text;
-  std::size_t failing = 0;
-  for (const ComparedPicture& picture : found.pictures)
-    if (fails(picture) && ++failing <= kMaxListed)
+  std::size_t listed = 0;
+  const auto list = [&](const ComparedPicture& picture) {
+    if (++listed <= kMaxListed)
       text += fmt::format("{}: {}\n", printableLine(picture.name), picture.comparison.sentence);
-  if (failing > kMaxListed) text += fmt::format("and {} more\n", failing - kMaxListed);
+  };
   const auto missing = std::ranges::count_if(found.pictures, isMissing);
   const auto unexpected = std::ranges::count_if(found.pictures, isUnexpected);
   const auto isRounded = [](const ComparedPicture& picture) {
     return picture.comparison.passes && !picture.comparison.isSame;
   };
+  const auto failing = std::ranges::count_if(found.pictures, fails);
   const auto rounded = std::ranges::count_if(found.pictures, isRounded);
+  for (const ComparedPicture& picture : found.pictures)
+    if (fails(picture)) list(picture);
+  for (const ComparedPicture& picture : found.pictures)
+    if (isRounded(picture)) list(picture);
+  if (listed > kMaxListed) text += fmt::format("and {} more\n", listed - kMaxListed);
   text += fmt::format("{} of {} pictures differ", failing, found.pictures.size());
   if (missing > 0) text += fmt::format("; {} missing", missing);
   if (unexpected > 0) text += fmt::format("; {} not expected", unexpected);

@@ -1,6 +1,7 @@
 #include "commands/kept_simulation.h"
 
-#include <filesystem>
+#include <unistd.h>
+
 #include <utility>
 
 #include "commands/run_file.h"
@@ -11,18 +12,12 @@
 namespace cradle {
 
 KeptSimulation::KeptSimulation(std::string path, const Scene& scene, bool quiet)
-    : path_(std::move(path)), scene_(scene), quiet_(quiet) {
-  requireNoWriter(part());
+    : path_(std::move(path)), part_(partPath(path_)), scene_(scene), quiet_(quiet) {
+  requireNoWriter(part_);
 }
 
 KeptSimulation::~KeptSimulation() {
-  if (!isOurs_) return;
-  std::error_code ignored;
-  std::filesystem::remove(part(), ignored);
-}
-
-std::string KeptSimulation::part() const {
-  return partPath(path_);
+  if (isOurs_) unlink(part_.c_str());  // asks for no memory, which may be what has ended the run
 }
 
 void KeptSimulation::run(const SimulationSink& told, const std::function<void(long frames)>& skip) {

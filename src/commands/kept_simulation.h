@@ -22,11 +22,10 @@ class KeptSimulation {
   /// Error(output) if that cannot be written, and what simulate() throws.
   void run(const SimulationSink& told, const std::function<void(long frames)>& skip = {});
 
-  /// FILE.part.
-  std::string part() const;
+  const std::string& part() const { return part_; }
 
  private:
-  const std::string path_;
+  const std::string path_, part_;
   const Scene& scene_;
   const bool quiet_;
   bool isOurs_ = false;  // FILE.part

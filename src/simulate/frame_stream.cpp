@@ -31,7 +31,7 @@ void FrameStream::run(const std::function<void(const SimulationSink&)>& simulate
   } catch (const Closed&) {
   } catch (...) {
     const std::lock_guard lock(mutex_);
-    items_.emplace_back(std::current_exception());
+    failure_ = std::current_exception();
     changed_.notify_all();
   }
 }
@@ -46,7 +46,8 @@ void FrameStream::put(Item item) {
 
 FrameStream::Item FrameStream::take() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return !items_.empty(); });
+  changed_.wait(lock, [this] { return !items_.empty() || failure_; });
+  if (items_.empty()) std::rethrow_exception(failure_);
   Item item = std::move(items_.front());
   items_.pop_front();
   changed_.notify_all();
@@ -58,7 +59,6 @@ Frame FrameStream::next(const std::function<void(const std::string&)>& warn,
   for (;;) {
     Item item = take();
     if (auto* frame = std::get_if<Frame>(&item)) return std::move(*frame);
-    if (const auto* error = std::get_if<std::exception_ptr>(&item)) std::rethrow_exception(*error);
     if (const auto* push = std::get_if<Event>(&item))
       pushEvents_.push_back(*push);
     else if (const auto* time = std::get_if<double>(&item)) {

@@ -41,7 +41,7 @@ class FrameStream {
   const std::vector<Event>& pushEvents() const { return pushEvents_; }
 
  private:
-  using Item = std::variant<Frame, Event, double, std::string, std::exception_ptr>;  // the last three: s, warning, end
+  using Item = std::variant<Frame, Event, double, std::string>;  // the last two: s, warning
   struct Closed {};
   void run(const std::function<void(const SimulationSink&)>& simulate);
   void put(Item item);
@@ -50,6 +50,7 @@ class FrameStream {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Item> items_;
+  std::exception_ptr failure_;  // behind the items
   bool isClosed_ = false;
   std::vector<Event> pushEvents_;  // taken
   std::thread thread_;
