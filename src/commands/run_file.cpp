@@ -15,6 +15,22 @@
 
 namespace cradle {
 
+namespace {
+
+/// None if what the file tells up to the checkpoint is not what was written. Throws what reading throws.
+std::optional<Checkpoint> soundCheckpoint(const TrajectoryReader& told,
+                                          const TrajectoryReader::StoredCheckpoint& stored) {
+  const Checkpoint checkpoint = checkpointOf(runRecordOf(stored.record), stored.record);
+  if (told.isFinished() || checkpoint.frame >= told.frameCount() || std::ssize(told.events()) < checkpoint.eventCount ||
+      std::ssize(told.contacts()) < checkpoint.contactCount)
+    return std::nullopt;
+  Hash hash;
+  for (long frame = 0; frame <= checkpoint.frame; ++frame) addFrame(told.readFrame(frame), hash);
+  return hash.hex() == stored.stateHash ? std::optional(checkpoint) : std::nullopt;
+}
+
+}  // namespace
+
 RunFile::RunFile(const std::string& output, const Scene& scene, const World& world, bool isStrict, bool isFresh)
     : part_(partPath(output)), scene_(scene), header_(headerOf(scene, world.plan())), isStrict_(isStrict) {
   if (!isFresh) from_ = findCheckpoint();
@@ -41,27 +57,27 @@ std::string RunFile::fingerprint() const {
   return hash.hex();
 }
 
-/// That of an unfinished run of the scene, if there is one that can be gone on from.
-std::optional<Checkpoint> RunFile::findCheckpoint() const {
+/// That of an unfinished run of the scene, if there is one that can be gone on from. Sets `refusal_`.
+std::optional<Checkpoint> RunFile::findCheckpoint() {
   if (!isTrajectoryFile(part_)) return std::nullopt;
   try {
     const TrajectoryReader told(part_);
     const auto stored = told.checkpoint();
-    if (!stored || told.isFinished() || stored->fingerprint != fingerprint()) return std::nullopt;
-    const Checkpoint checkpoint = checkpointOf(runRecordOf(stored->record), stored->record);
-    if (checkpoint.frame >= told.frameCount() || told.countEvents(checkpoint.eventCount) != checkpoint.eventCount ||
-        std::ssize(told.contacts()) < checkpoint.contactCount)
+    if (!stored) return std::nullopt;  // ended before its first one: little is lost
+    if (stored->fingerprint != fingerprint()) {
+      refusal_ = "is of another scene, other options or another program";
       return std::nullopt;
-    Hash hash;
-    for (long frame = 0; frame <= checkpoint.frame; ++frame) addFrame(told.readFrame(frame), hash);
-    return hash.hex() == stored->stateHash ? std::optional(checkpoint) : std::nullopt;
-  } catch (const Error&) {  // damaged
-    return std::nullopt;
+    }
+    if (const auto checkpoint = soundCheckpoint(told, *stored)) return checkpoint;
+  } catch (const Error&) {  // told below
   }
+  refusal_ = "is damaged";
+  return std::nullopt;
 }
 
 void RunFile::tellOfCheckpoint(const std::string& hint) const {
   if (from_) show(stderr, "note: going on after frame {} of {}{}\n", from_->frame, printableLine(part_), hint);
+  if (!refusal_.empty()) show(stderr, "note: {} {}; the run begins anew\n", printableLine(part_), refusal_);
 }
 
 long RunFile::tellKept(const std::function<void(const Frame&)>& tellFrame,

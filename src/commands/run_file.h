@@ -22,7 +22,7 @@ class RunFile {
   /// Of all that the motion depends on, and of the program.
   std::string fingerprint() const;
 
-  /// Says on stderr, if it goes on, from where.
+  /// Says on stderr, if it goes on, from where; if it does not in spite of a checkpoint, why.
   void tellOfCheckpoint(const std::string& hint = "") const;
 
   /// Tells what there is up to the checkpoint, events before the frame of their instant. Returns the number of frames;
@@ -34,12 +34,13 @@ class RunFile {
   std::string record() const { return from_ ? from_->record : ""; }
 
  private:
-  std::optional<Checkpoint> findCheckpoint() const;
+  std::optional<Checkpoint> findCheckpoint();
 
   const std::string part_;
   const Scene& scene_;
   const TrajectoryHeader header_;
   const bool isStrict_;
+  std::string refusal_;  // of what there is of an unfinished run; empty if nothing is refused
   std::optional<Checkpoint> from_;
   std::optional<TrajectoryReader> told_;
   std::optional<TrajectoryWriter> writer_;

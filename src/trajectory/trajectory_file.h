@@ -129,9 +129,6 @@ class TrajectoryReader {
   };
   std::optional<StoredCheckpoint> checkpoint() const;
 
-  /// How many of the first so many events are there.
-  long countEvents(long first) const;
-
   /// By frame, of those whose camera was known. Empty in trajectories of earlier versions.
   std::vector<CameraPose> cameras() const;
 

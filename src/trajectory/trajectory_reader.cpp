@@ -470,11 +470,6 @@ std::optional<TrajectoryReader::StoredCheckpoint> TrajectoryReader::checkpoint()
                           query.text(2)};
 }
 
-long TrajectoryReader::countEvents(long first) const {
-  return static_cast<long>(
-      oneInteger(*session_->database, fmt::format("SELECT count(*) FROM event WHERE rowid <= {}", first)));
-}
-
 std::vector<CameraPose> TrajectoryReader::cameras() const {
   Database& database = *session_->database;
   std::vector<CameraPose> cameras;

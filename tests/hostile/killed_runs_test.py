@@ -125,6 +125,14 @@ class KilledRuns(unittest.TestCase):
         write(path("long.json"), scene(8, bodies=spheres, springs=springs, method={"name": "rk4", "timeStep": 1.5e-5}))
         write(path("seen.json"), scene(3, bodies=spheres, springs=springs, method={"name": "rk4", "timeStep": 1.5e-5},
                                        camera={"position": [0, -2, 9], "target": [0, -2, 0]}))
+        # Elastic balls between walls: 45 impacts a second, and more than 100,000 before a checkpoint.
+        hard = {"hard": {"restitution": 1, "staticFriction": 0, "dynamicFriction": 0}}
+        walls = [{"name": "wall%d" % k, "shape": {"plane": {"normal": normal}}, "motion": "static", "material": "hard",
+                  "position": [-x for x in normal]}
+                 for k, normal in enumerate([[1, 0, 0], [-1, 0, 0], [0, 0, 1], [0, 0, -1], [0, 1, 0]])]
+        balls = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "material": "hard", "position": [-0.7, -0.9, -0.7],
+                 "linearVelocity": [1.3, 0, 0.7], "copies": {"count": [4, 1, 4], "spacing": [0.4, 0.4, 0.4]}}
+        write(path("gas.json"), scene(12000, bodies=[*walls, balls], springs=[], materials=hard, output={"framesPerSecond": 1}))
         write(path("film.json"), scene(0.5, method={"name": "rk4", "timeStep": 1e-5}))
         sphere = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}
         write(path("short.json"), scene(0.5, bodies=[sphere]))
@@ -271,18 +279,21 @@ class KilledRuns(unittest.TestCase):
         database = sqlite3.connect(os.path.join(folder, "out", "a.sqlite"))
         self.assertEqual(database.execute("select count(*) from checkpoint").fetchone(), (0,))
         database.close()
-        for options, damage in ((["--fresh"], ""), ([], "update checkpoint set record = zeroblob(length(record))"),
-                                ([], "update checkpoint set fingerprint = '0'"), ([], "update checkpoint set stateHash = '0'"),
-                                ([], "delete from frame where id = 3"),
-                                ([], "update state set px = px + 1 where frame = 3 and body = 1"),
-                                ([], "insert into meta values ('stateHash', '0')"), ([], "delete from checkpoint"),
-                                (["--strict"], "")):
+        damaged = ["note: out/a.sqlite.part is damaged; the run begins anew"]
+        other = ["note: out/a.sqlite.part is of another scene, other options or another program; the run begins anew"]
+        for options, damage, told in (
+                (["--fresh"], "", []), ([], "update checkpoint set record = zeroblob(length(record))", damaged),
+                ([], "update checkpoint set fingerprint = '0'", other),
+                ([], "update checkpoint set stateHash = '0'", damaged), ([], "delete from frame where id = 3", damaged),
+                ([], "update state set px = px + 1 where frame = 3 and body = 1", damaged),
+                ([], "insert into meta values ('stateHash', '0')", damaged),
+                ([], "delete from checkpoint", []), (["--strict"], "", other)):
             os.remove(os.path.join(folder, "out", "a.sqlite"))
             shutil.copy(kept, part)
             database = sqlite3.connect(part)
             database.executescript(damage)
             database.close()
-            self.assertEqual(self.rows_of_next_run(folder, *options), ([], rows), (options, damage))
+            self.assertEqual(self.rows_of_next_run(folder, *options), (told, rows), (options, damage))
 
     def test_video_goes_on_from_its_checkpoint(self):
         command = ["video", "in/seen.json", "-o", "out/a.mp4"]
@@ -301,8 +312,23 @@ class KilledRuns(unittest.TestCase):
         folder = self.folder("simulate")
         part = self.killed_behind_a_checkpoint(folder)
         notes, rows = self.rows_of_next_run(folder, "--duration", "1")
-        self.assertEqual((notes, len(rows[0])), ([], 61))
+        self.assertEqual((len(notes), len(rows[0])), (1, 61))
+        self.assertIn("is of another scene, other options or another program", notes[0])
         self.assertFalse(os.path.exists(part))
+
+    def test_a_run_of_many_events_goes_on(self):
+        folder = self.folder("simulate")
+        command = ["simulate", "in/gas.json", "-o", "out/a.sqlite"]
+        part = self.killed_behind_a_checkpoint(folder, command)
+        database = sqlite3.connect(part)
+        self.assertGreater(database.execute("select count(*) from event").fetchone()[0], 100_000)
+        database.close()
+        run = subprocess.run([PROGRAM, *command], cwd=folder, capture_output=True, text=True)
+        self.assertRegex(run.stderr, r"note: going on after frame \d+ of out/a.sqlite.part")
+        subprocess.run([PROGRAM, "-qq", "simulate", "in/gas.json", "-o", "out/b.sqlite"], cwd=folder, check=True)
+        compared = subprocess.run([PROGRAM, "compare", "out/a.sqlite", "out/b.sqlite", "--tolerance", "0"], cwd=folder,
+                                  capture_output=True, text=True)
+        self.assertEqual(compared.returncode, 0, compared.stdout)
 
     def check_many_kills(self, command):
         """One run that is killed again and again, and goes on, ends as if nothing had been."""
