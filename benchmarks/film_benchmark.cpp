@@ -18,9 +18,10 @@
 #include <vector>
 
 #include "commands/film.h"
-#include "commands/film_view.h"
+#include "commands/trajectory_source.h"
 #include "core/error.h"
 #include "core/interruption.h"
+#include "film/film_view.h"
 #include "image/video.h"
 #include "render/renderer.h"
 

@@ -7,7 +7,8 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "commands/film_view.h"
+#include "commands/trajectory_source.h"
+#include "film/film_view.h"
 #include "render/renderer.h"
 
 namespace cradle {

@@ -8,7 +8,7 @@ if(CMAKE_SCRIPT_MODE_FILE)
     file(READ ${NAME_OF_FILE} TEXT)
     string(APPEND ENTRIES "    {\"${NAME}\", R\"~player~(${TEXT})~player~\"},\n")
   endforeach()
-  file(WRITE ${OUTPUT} "#include \"commands/embedded_player.h\"
+  file(WRITE ${OUTPUT} "#include \"player/embedded_player.h\"
 
 namespace cradle {
 

@@ -7,6 +7,11 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE)
 
+# For libraries of others: code that can be loaded anywhere, whose names are not seen outside of what it is linked into,
+# and an Eigen of our own, since a program that is compiled with AVX has another one of the same name.
+add_compile_options(-fPIC -fvisibility=hidden $<$<COMPILE_LANGUAGE:CXX>:-fvisibility-inlines-hidden>)
+add_compile_definitions(Eigen=CradleEigen)
+
 add_compile_options(-Wall -Wextra -Wconversion -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-Wno-restrict -Wno-array-bounds)  # false alarms of g++ 12 inside std::string

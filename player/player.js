@@ -1,5 +1,5 @@
 "use strict";
-// Plays a motion. `motion` is what src/commands/player_document.cpp writes; places are in the scene's world, turned as a
+// Plays a motion. `motion` is what src/player/player_document.cpp writes; places are in the scene's world, turned as a
 // whole so that up is y.
 
 (async () => {

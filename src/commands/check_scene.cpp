@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "commands/body_list.h"
-#include "commands/json_numbers.h"
 #include "commands/warnings.h"
 #include "core/console.h"
 #include "core/error.h"
+#include "core/json_numbers.h"
 #include "core/printable.h"
 #include "scene/count_bodies.h"
 #include "simulate/assembly.h"

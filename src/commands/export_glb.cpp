@@ -5,13 +5,13 @@
 #include <optional>
 #include <vector>
 
-#include "commands/film_view.h"
 #include "commands/glb_joints.h"
-#include "commands/trajectory_source.h"
 #include "core/crash.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/progress.h"
+#include "film/film_source.h"
+#include "film/film_view.h"
 #include "math/rotation.h"
 #include "render/appearance.h"
 #include "render/body_place.h"
@@ -53,12 +53,12 @@ RigidTransform poseOf(const Camera& camera) {
 
 class GlbExport {
  public:
-  /// `source` has a whole trajectory, and must outlive this object. The y axis of glTF is up, as in pictures.
-  GlbExport(TrajectorySource& source, const std::string& path)
-      : source_(source),
-        reader_(source.reader()),
+  /// `motion` has a whole trajectory, and must outlive this object. The y axis of glTF is up, as in pictures.
+  GlbExport(FilmSource& motion, const std::string& path)
+      : motion_(motion),
+        reader_(motion.reader()),
         path_(path),
-        scene_(source.drawnScene()),
+        scene_(motion.drawnScene()),
         file_(scene_.name),
         meshes_(reader_.header(), scene_, file_) {}
 
@@ -81,7 +81,7 @@ class GlbExport {
   void setPose(std::size_t frame, const Vec3& position, const Quat& orientation, Track& track);
   void setLink(std::size_t frame, const std::vector<RigidTransform>& places, Link& link);
 
-  TrajectorySource& source_;
+  FilmSource& motion_;
   const TrajectoryReader& reader_;
   const std::string path_;
   const Scene& scene_;
@@ -212,8 +212,8 @@ void GlbExport::addPlanes() {
 /// The one of the pictures: it looks along its -z axis, with y up. It moves where the scene says so.
 void GlbExport::addCamera() {
   const Output& output = scene_.output;
-  camera_.emplace(cameraOf(source_, viewOf(source_, output.width, output.height)));
-  const Camera start = camera_->at(source_.drawnFrameAt(0));
+  camera_.emplace(cameraOf(motion_, viewOf(motion_, output.width, output.height)));
+  const Camera start = camera_->at(motion_.drawnFrameAt(0));
   cameraPose_ = poseOf(start);
   const int node = file_.addNode("camera", cameraPose_);
   file_.setCamera(node, start.verticalFieldOfView, static_cast<double>(output.width) / output.height);
@@ -243,7 +243,7 @@ void GlbExport::addLights() {
 void GlbExport::build(bool quiet) {
   requireFits();
   addTimes();
-  addBodies(placeBodies(scene_, source_.drawnFrameAt(0)));
+  addBodies(placeBodies(scene_, motion_.drawnFrameAt(0)));
   linkRadius_ = linkRadius(scene_, bounds_);
   addLinks(scene_.springs, "spring", kDarkSteel);
   addLinks(scene_.rods, "rod", kSteel);
@@ -256,7 +256,7 @@ void GlbExport::build(bool quiet) {
   Progress progress("Exporting", "frames", reader_.frameCount(), quiet);
   for (long number = 0; number < reader_.frameCount(); ++number) {
     throwIfInterrupted();
-    addFrame(source_.drawnFrameAt(number));
+    addFrame(motion_.drawnFrameAt(number));
     progress.update(number + 1);
   }
   joints_->addRails();
@@ -268,8 +268,8 @@ void GlbExport::build(bool quiet) {
 void exportGlb(TrajectoryReader reader, const std::string& path, bool quiet) {
   PartFile file(path);
   const EndWithoutMemory end;  // nlohmann's documents ask for memory when they go
-  TrajectorySource source(std::move(reader), quiet);
-  GlbExport glb(source, path);
+  FilmSource motion(std::move(reader));
+  GlbExport glb(motion, path);
   glb.build(quiet);
   glb.write(file);
   file.complete();

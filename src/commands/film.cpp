@@ -7,12 +7,14 @@
 #include <cstring>
 #include <deque>
 
-#include "commands/drawing_memory.h"
-#include "commands/film_drawer.h"
+#include "commands/draw_frames.h"
+#include "commands/picture_order.h"
+#include "commands/trajectory_source.h"
 #include "commands/warnings.h"
 #include "core/error.h"
 #include "core/output_path.h"
 #include "core/printable.h"
+#include "film/drawing_memory.h"
 #include "image/video.h"
 #include "overlay/captions.h"
 
@@ -33,7 +35,7 @@ void addTitleCard(const Scene& scene, int width, int height, VideoEncoder& encod
 class Part {
  public:
   Part(const std::string& input, const PictureOptions& options, bool quiet)
-      : source(input, quiet, {.assetRoot = options.assetRoot}), order(options, source.scene()) {}
+      : source(input, quiet, {.assetRoot = options.assetRoot}), order(pictureOrderOf(options, source.scene())) {}
 
   /// After source.simulateUntilItFails().
   void prepare(const std::optional<View>& view) {
@@ -154,7 +156,7 @@ void makeFilm(const std::string& input, const std::string& film, const PictureOp
   requireOtherFile(film, input);
   if (options.overlay) parseOverlays(*options.overlay);
   TrajectorySource source(input, quiet, {.assetRoot = options.assetRoot});
-  const PictureOrder order(options, source.scene());
+  const PictureOrder order = pictureOrderOf(options, source.scene());
   source.keepAt(film + ".sqlite");
   drawFilm(source, order, film, quiet);
 }

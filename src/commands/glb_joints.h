@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "commands/glb_meshes.h"
-#include "commands/joint_parts.h"
+#include "film/joint_parts.h"
 
 namespace cradle {
 

@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "commands/film_drawer.h"
+#include "commands/picture_order.h"
+#include "commands/trajectory_source.h"
 #include "commands/truth_film.h"
 #include "core/console.h"
 #include "core/error.h"
@@ -59,7 +60,7 @@ void showVertex(const Scene& scene, const Body& body, const Vec3& point) {
 void pickPoint(const std::string& input, long frame, const std::string& pixel, const PictureOptions& options,
                bool quiet) {
   TrajectorySource source(input, quiet, {.assetRoot = options.assetRoot});
-  const PictureOrder order(options, source.scene());
+  const PictureOrder order = pictureOrderOf(options, source.scene());
   const Eigen::Vector2d place = parsePixel(pixel, order.size);
   if (frame < 0 || frame >= source.frameCount())
     throw Error(ErrorKind::usage, "--frame",

@@ -8,11 +8,12 @@
 #include <limits>
 #include <thread>
 
-#include "commands/drawing_memory.h"
-#include "commands/film_drawer.h"
+#include "commands/draw_frames.h"
 #include "commands/frame_folder.h"
 #include "commands/number_pair.h"
+#include "commands/picture_order.h"
 #include "commands/shard.h"
+#include "commands/trajectory_source.h"
 #include "commands/truth_film.h"
 #include "core/error.h"
 #include "core/folder_lock.h"
@@ -21,9 +22,11 @@
 #include "core/part_file.h"
 #include "core/progress.h"
 #include "core/read_file.h"
+#include "film/drawing_memory.h"
 #include "image/png.h"
 #include "image/video.h"
 #include "scene/ranges.h"
+#include "trajectory/copy_trajectory.h"
 #include "trajectory/trajectory_file.h"
 
 namespace cradle {
@@ -107,20 +110,6 @@ bool isBeingFilled(const std::string& path) {
   return false;
 }
 
-void copyTrajectory(const TrajectoryReader& trajectory, const std::string& path) {
-  TrajectoryWriter writer(path, trajectory.header());
-  for (const LastingContact& contact : trajectory.contacts()) writer.append(contact);
-  for (long number = 0; number < trajectory.frameCount(); ++number) {
-    throwIfInterrupted();
-    Frame frame = trajectory.readFrame(number);
-    frame.contacts = trajectory.contactsAt(number);
-    writer.append(frame);
-  }
-  for (const Event& event : trajectory.events()) writer.append(event);
-  for (const CameraPose& camera : trajectory.cameras()) writer.append(camera);
-  writer.finish(trajectory.cost());
-}
-
 /// Keeps a simulated trajectory in the folder, once: a run beside this one may be writing it, and then it is waited
 /// for.
 void keepTrajectory(const TrajectoryReader& trajectory, const std::string& path) {
@@ -195,7 +184,7 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
   takeFolder(folder, options.shard ? std::nullopt : parseRange(options.frames, kMaxFrames), options, kinds, lock);
   if (options.overlay) parseOverlays(*options.overlay);
   TrajectorySource source(input, quiet, {.assetRoot = options.assetRoot});
-  const PictureOrder order(options, source.scene());
+  const PictureOrder order = pictureOrderOf(options, source.scene());
   const FrameRange range = shardOf(parseFrames(options.frames, source), options.shard);
   if (options.shard && !options.skipExisting) requireRoom(folder, range, kinds, options.overwrite);
   requireNoOthers(folder, source.frameCount());

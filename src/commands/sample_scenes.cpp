@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "commands/data_set.h"
-#include "commands/film_drawer.h"
 #include "commands/frame_folder.h"
+#include "commands/picture_order.h"
 #include "commands/sample_chain.h"
 #include "commands/sample_folder.h"
 #include "commands/shard.h"
@@ -149,7 +149,7 @@ void requireWork(const SceneSampler& sampler, const SampleOptions& options, cons
   if (work.units() == 0) return;
   const DrawnScene first = sampler.sample(options.seed, work.firstUnit());
   if (pictures.passes) parsePasses(*pictures.passes);
-  if (options.renders) PictureOrder(pictures, first.loaded.scene);
+  if (options.renders) pictureOrderOf(pictures, first.loaded.scene);
 }
 
 /// Makes a sample that no chain comes to.

@@ -14,9 +14,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "commands/film_drawer.h"
 #include "commands/frame_folder.h"
 #include "commands/job_scripts.h"
+#include "commands/picture_order.h"
 #include "commands/sample_chain.h"
 #include "commands/sample_folder.h"
 #include "commands/trajectory_source.h"
@@ -156,7 +156,7 @@ Film filmOf(const std::string& input, const PictureOptions& pictures) {
   film.isTrajectory = isDatabaseFile(input);
   const TrajectorySource source(input, true, {.assetRoot = pictures.assetRoot});
   if (pictures.passes) parsePasses(*pictures.passes);
-  PictureOrder(pictures, source.scene());
+  pictureOrderOf(pictures, source.scene());
   film.frames = source.pictureCount();
   film.framesPerSecond = source.scene().output.framesPerSecond;
   film.hasTitleCard = source.scene().titleCard.has_value();

@@ -11,16 +11,16 @@
 
 namespace cradle {
 
-TruthFilm::TruthFilm(TrajectorySource& source, const View& view, int width, int height, const std::vector<Pass>& passes,
+TruthFilm::TruthFilm(FilmSource& motion, const View& view, int width, int height, const std::vector<Pass>& passes,
                      PassFormat format)
-    : source_(source),
+    : motion_(motion),
       width_(width),
       height_(height),
       passes_(passes),
       format_(format),
-      surfaces_(source.drawnScene(), view),
-      camera_(cameraOf(source, view)) {
-  const std::size_t bodies = source.scene().bodies.size();
+      surfaces_(motion.drawnScene(), view),
+      camera_(cameraOf(motion, view)) {
+  const std::size_t bodies = motion.scene().bodies.size();
   if (!passes.empty() && bodies >= static_cast<std::size_t>(kFirstLinkId))
     throw Error(ErrorKind::limit, "--passes",
                 fmt::format("the scene has {} bodies; a segmentation can tell {} apart", bodies, kFirstLinkId - 1));
@@ -29,7 +29,7 @@ TruthFilm::TruthFilm(TrajectorySource& source, const View& view, int width, int 
 const Camera& TruthFilm::cameraAt(long frame) {
   while (std::ssize(cameras_) <= frame) {
     throwIfInterrupted();
-    cameras_.push_back(camera_.at(source_.drawnFrameAt(std::ssize(cameras_))));
+    cameras_.push_back(camera_.at(motion_.drawnFrameAt(std::ssize(cameras_))));
   }
   return cameras_[static_cast<std::size_t>(frame)];
 }
@@ -41,8 +41,8 @@ bool TruthFilm::has(Pass pass) const {
 FrameRays& TruthFilm::raysOf(long frame) {
   std::unique_ptr<FrameRays>& rays = nearby_[frame];
   if (!rays) {
-    const Frame state = source_.drawnFrameAt(frame);
-    rays = std::make_unique<FrameRays>(surfaces_, state, placeBodies(source_.drawnScene(), state),
+    const Frame state = motion_.drawnFrameAt(frame);
+    rays = std::make_unique<FrameRays>(surfaces_, state, placeBodies(motion_.drawnScene(), state),
                                        Pinhole(cameraAt(frame), width_, height_));
   }
   return *rays;
@@ -50,7 +50,7 @@ FrameRays& TruthFilm::raysOf(long frame) {
 
 Pinhole TruthFilm::inSceneWorld(long frame) {
   Camera camera = cameraAt(frame);
-  const Quat turn = source_.worldFromDrawn();
+  const Quat turn = motion_.worldFromDrawn();
   camera.position = turn * camera.position;
   camera.target = turn * camera.target;
   camera.up = turn * camera.up;
@@ -69,7 +69,7 @@ std::vector<PassArray> TruthFilm::passesOf(long frame, std::vector<std::uint16_t
                 std::vector<std::uint8_t>(segmentation.size(), 1)};
   };
   if (has(Pass::depth)) add(nameOf(Pass::depth), 1, depthPass(seen));
-  if (has(Pass::normal)) add(nameOf(Pass::normal), 3, normalPass(seen, source_.worldFromDrawn()));
+  if (has(Pass::normal)) add(nameOf(Pass::normal), 3, normalPass(seen, motion_.worldFromDrawn()));
   if (has(Pass::flow)) {
     Flow flow = flowTo(frame + 1, true);
     add(nameOf(Pass::flow), 2, std::move(flow.shift));
@@ -92,16 +92,16 @@ std::vector<FileBytes> TruthFilm::filesOf(long frame) {
     for (const PassArray& pass : passes)
       files.push_back({frameFileName({pass.name, frame}), npyBytes(pass, width_, height_)});
   std::string instances =
-      instancesJson(source_.scene(), source_.frameAt(frame), raysOf(frame).wholes(), {segmentation, width_, height_});
+      instancesJson(motion_.scene(), motion_.frameAt(frame), raysOf(frame).wholes(), {segmentation, width_, height_});
   files.push_back({frameFileName({kInstancesKind, frame}), std::move(instances)});
   return files;
 }
 
 std::vector<FileBytes> TruthFilm::filesOfFilm() {
   std::vector<FrameCamera> cameras;
-  for (long frame = 0; frame < source_.frameCount(); ++frame)
-    cameras.push_back({frame, frameTime(source_.scene(), frame), inSceneWorld(frame)});
-  return {{kCameraFile, cameraJson(cameras)}, {kEventsFile, eventsJson(source_.reader().events(), source_.scene())}};
+  for (long frame = 0; frame < motion_.frameCount(); ++frame)
+    cameras.push_back({frame, frameTime(motion_.scene(), frame), inSceneWorld(frame)});
+  return {{kCameraFile, cameraJson(cameras)}, {kEventsFile, eventsJson(motion_.reader().events(), motion_.scene())}};
 }
 
 }  // namespace cradle

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "commands/film_view.h"
-#include "commands/trajectory_source.h"
+#include "film/film_source.h"
+#include "film/film_view.h"
 #include "truth/pass_files.h"
 #include "truth/passes.h"
 #include "truth/truth_json.h"
@@ -24,9 +24,9 @@ enum class PassFormat { npy, exr };
 /// Ground truth of a film: what its pixels show, as files.
 class TruthFilm {
  public:
-  /// `source` is simulated, or beside this object, and must outlive it. Throws Error(limit) for more bodies than passes
+  /// `motion` is simulated, or beside this object, and must outlive it. Throws Error(limit) for more bodies than passes
   /// can tell apart.
-  TruthFilm(TrajectorySource& source, const View& view, int width, int height, const std::vector<Pass>& passes,
+  TruthFilm(FilmSource& motion, const View& view, int width, int height, const std::vector<Pass>& passes,
             PassFormat format = PassFormat::npy);
 
   /// What is seen in a frame, in the drawn world. Throws as finding its camera does. It goes when a frame that is not
@@ -42,11 +42,11 @@ class TruthFilm {
  private:
   bool has(Pass pass) const;
   std::vector<PassArray> passesOf(long frame, std::vector<std::uint16_t> segmentation);
-  bool isThere(long frame) const { return frame >= 0 && frame < source_.frameCount(); }
+  bool isThere(long frame) const { return frame >= 0 && frame < motion_.frameCount(); }
   const Camera& cameraAt(long frame);
   Pinhole inSceneWorld(long frame);
 
-  TrajectorySource& source_;
+  FilmSource& motion_;
   int width_, height_;
   std::vector<Pass> passes_;
   PassFormat format_;

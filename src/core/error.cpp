@@ -1,9 +1,5 @@
 #include "core/error.h"
 
-#include <cstdio>
-#include <cstdlib>
-
-#include "core/crash.h"
 #include "core/printable.h"
 
 namespace cradle {
@@ -24,10 +20,8 @@ Error Error::ofLines(ErrorKind kind, const std::string& lines) {
 }
 
 void failCheck(const char* condition, const char* file, int line) {
-  std::fprintf(stderr, "cradle: internal check failed: %s (%s:%d). This is a bug in cradle, not in your scene.\n",
-               condition, file, line);
-  removeRemains();
-  std::_Exit(1);
+  throw FailedCheck(std::string("internal check failed: ") + condition + " (" + file + ":" + std::to_string(line) +
+                    ")");
 }
 
 }  // namespace cradle

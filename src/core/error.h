@@ -1,6 +1,7 @@
 #pragma once
 
 #include <exception>
+#include <stdexcept>
 #include <string>
 
 namespace cradle {
@@ -37,11 +38,17 @@ class Error : public std::exception {
   std::string message_;  // "where: what"
 };
 
-/// Prints `condition` and its place, and ends the program with exit code 1.
+/// A mistake of our own: CRADLE_CHECK throws it, and only main catches it.
+class FailedCheck : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+
+/// Throws FailedCheck with `condition` and its place.
 [[noreturn]] void failCheck(const char* condition, const char* file, int line);
 
 }  // namespace cradle
 
-/// Our own mistake, not the user's: always on, stops at once.
+/// For mistakes of our own, not the user's: always on, stops at once.
 #define CRADLE_CHECK(condition) \
   ((condition) ? static_cast<void>(0) : ::cradle::failCheck(#condition, __FILE__, __LINE__))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include "core/cpu_stopwatch.h"
 
@@ -50,9 +51,40 @@ void WorkerThreads::run(const std::function<void(int)>& task) {
     started_.fetch_add(1, std::memory_order_release);
   }
   wake_.notify_all();
-  task(0);
-  meet();
+  doTask(0);
+  awaitHelpers();
   addCpuSecondsOfHelpers(helperSeconds_.exchange(0));
+  if (!isBroken_) return;
+  isBroken_ = false;
+  waiting_ = 0;
+  std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+/// What it throws is kept, and no thread waits for this one any more.
+void WorkerThreads::doTask(int thread) {
+  try {
+    (*task_)(thread);
+  } catch (const Broken&) {
+  } catch (...) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+    }
+    breakMeetings();
+  }
+}
+
+/// Who comes to a meeting later sees isBroken_; who waits in one wakes.
+void WorkerThreads::breakMeetings() {
+  isBroken_ = true;
+  meetings_.fetch_add(1);
+  meetings_.notify_all();
+}
+
+void WorkerThreads::awaitHelpers() {
+  for (int spins = 0; spins < kSpins && ended_.load(std::memory_order_acquire) < count_ - 1; ++spins) pause();
+  for (int ended; (ended = ended_.load(std::memory_order_acquire)) < count_ - 1;) ended_.wait(ended);
+  ended_.store(0, std::memory_order_relaxed);
 }
 
 void WorkerThreads::work(int thread) {
@@ -66,23 +98,26 @@ void WorkerThreads::work(int thread) {
       if (isClosing_) return;
     }
     const double before = cpuSecondsOfThread();
-    (*task_)(thread);
+    doTask(thread);
     helperSeconds_.fetch_add(cpuSecondsOfThread() - before);
-    meet();
+    ended_.fetch_add(1, std::memory_order_acq_rel);
+    ended_.notify_all();
   }
 }
 
 void WorkerThreads::meet() {
   if (count_ == 1) return;
-  const long meeting = meetings_.load(std::memory_order_acquire);
+  const long meeting = meetings_.load();
+  if (isBroken_) throw Broken();
   if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == count_) {
     waiting_.store(0, std::memory_order_relaxed);
-    meetings_.store(meeting + 1, std::memory_order_release);
+    meetings_.fetch_add(1, std::memory_order_acq_rel);
     meetings_.notify_all();
     return;
   }
   for (int spins = 0; spins < kSpins && meetings_.load(std::memory_order_acquire) == meeting; ++spins) pause();
   meetings_.wait(meeting, std::memory_order_acquire);
+  if (isBroken_) throw Broken();
 }
 
 WorkerThreads::Part WorkerThreads::partOf(std::size_t size, int thread) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -24,11 +25,11 @@ class WorkerThreads {
   int count() const { return count_; }
 
   /// Calls task(thread) for thread = 0 .. count - 1, each on a thread of its own, and returns when all have returned.
-  /// The task must not throw.
+  /// Throws the first of what the tasks throw; the others end at their next meeting then.
   void run(const std::function<void(int)>& task);
 
   /// Calls work(thread, first, last) for parts [first, last) of `size` things, `grain` in each, until all are done: a
-  /// thread that is done early takes more of them. The work must not throw.
+  /// thread that is done early takes more of them. Throws as run() does.
   template <class Work>
   void share(std::size_t size, std::size_t grain, const Work& work) {
     if (count_ == 1) return work(0, std::size_t{0}, size);
@@ -49,8 +50,12 @@ class WorkerThreads {
   Part partOf(std::size_t size, int thread) const;
 
  private:
+  struct Broken {};  // another thread's task has thrown
   void start();
   void work(int thread);
+  void doTask(int thread);
+  void breakMeetings();
+  void awaitHelpers();
 
   int count_;
   std::vector<std::thread> threads_;
@@ -62,6 +67,9 @@ class WorkerThreads {
   std::atomic<bool> isClosing_ = false;
   std::atomic<int> waiting_ = 0;
   std::atomic<long> meetings_ = 0;
+  std::atomic<bool> isBroken_ = false;     // the meetings of this task
+  std::exception_ptr failure_;             // of the task that has thrown first; guarded by mutex_
+  std::atomic<int> ended_ = 0;             // helpers that are done with the task
   std::atomic<double> helperSeconds_ = 0;  // CPU time of the task by all but the caller
 };
 

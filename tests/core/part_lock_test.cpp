@@ -45,12 +45,13 @@ TEST_F(PartLockDeathTest, CrashLeavesNoPart) {
 }
 
 TEST_F(PartLockDeathTest, FailedCheckLeavesNoPart) {
-  EXPECT_EXIT(
+  EXPECT_THROW(
       {
         const PartLock lock(path_);
         CRADLE_CHECK(!fs::exists(path_ + ".part"));
       },
-      testing::ExitedWithCode(1), "check failed");
+      FailedCheck);
+  EXPECT_FALSE(fs::exists(path_ + ".part"));
 }
 
 TEST_F(PartLockDeathTest, CrashLeavesFinishedFilesAndThoseOfOthers) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <numeric>
+#include <stdexcept>
 
 namespace cradle {
 namespace {
@@ -47,6 +49,29 @@ TEST(WorkerThreads, SeeWhatOthersDidBeforeTheyMet) {
   });
   EXPECT_EQ(values[0], 1L << 40);
   EXPECT_EQ(values[1], 1L << 40);
+}
+
+// Whoever throws, before or behind meetings of the others, is told, and the next task finds the threads as new.
+TEST(WorkerThreads, TellWhatATaskThrows) {
+  for (const int count : {1, 2, 5}) {
+    WorkerThreads threads(count);
+    for (int thrower = 0; thrower < count; ++thrower)
+      for (int meetings = 0; meetings < 4; ++meetings) {
+        EXPECT_THROW(threads.run([&](int thread) {
+          for (int meeting = 0; meeting < 5; ++meeting) {
+            if (thread == thrower && meeting == meetings) throw std::runtime_error("one");
+            threads.meet();
+          }
+        }),
+                     std::runtime_error);
+        std::atomic<int> visits = 0;
+        threads.run([&](int) {
+          threads.meet();
+          ++visits;
+        });
+        EXPECT_EQ(visits, threads.count());
+      }
+  }
 }
 
 }  // namespace

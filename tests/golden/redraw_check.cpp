@@ -9,7 +9,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "commands/film_view.h"
+#include "commands/trajectory_source.h"
+#include "film/film_view.h"
 #include "image/png.h"
 #include "overlay/captions.h"
 #include "render/renderer.h"

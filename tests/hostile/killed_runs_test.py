@@ -3,8 +3,8 @@
 
     killed_runs_test.py PROGRAM SOURCE_FOLDER [SEED]
 
-Each command runs unharmed first, which gives its result and how long it takes; then four times with SIGKILL, and four times with
-SIGTERM, SIGINT and SIGHUP in turn, at a random moment of each quarter of that time (the same with each SEED), with and
+Each command runs unharmed first, which gives its result and how long it takes; then three times with SIGKILL, and once each with
+SIGTERM, SIGINT and SIGHUP, at a random moment of each third of that time (the same with each SEED), with and
 without an earlier result. After a kill, and where something is kept for the next run, the same command runs once more, at
 once. A run that ends before its signal takes effect is unharmed; at most half of the runs are.
 
@@ -17,7 +17,7 @@ from running import PATIENCE, everything, read, write
 
 PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-MOMENTS = 4         # a signal
+MOMENTS = 3         # a signal
 KILLS = 20          # of one run that goes on after each
 MOST_SECONDS = 5    # s from a signal to the end of the run
 MOST_FAULTS = 12    # that a test shows

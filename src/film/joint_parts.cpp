@@ -1,4 +1,4 @@
-#include "commands/joint_parts.h"
+#include "film/joint_parts.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "commands/packed_numbers.h"
+#include "player/packed_numbers.h"
 
 #include <libdeflate.h>
 

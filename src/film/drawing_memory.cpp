@@ -1,4 +1,4 @@
-#include "commands/drawing_memory.h"
+#include "film/drawing_memory.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

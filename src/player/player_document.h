@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "commands/trajectory_source.h"
+#include "film/film_source.h"
 
 namespace cradle {
 
@@ -12,7 +12,7 @@ namespace cradle {
 /// not null. `progress` is told the number of frames done. Throws Error(usage) if the
 /// two have other bodies that move, or other times of frames; Error(limit) if there is more than a page holds; and what
 /// reading throws.
-std::string playerDocument(TrajectorySource& source, const TrajectoryReader* other,
+std::string playerDocument(FilmSource& motion, const TrajectoryReader* other,
                            const std::function<void(long done)>& progress);
 
 }  // namespace cradle

@@ -1,4 +1,4 @@
-#include "commands/player_document.h"
+#include "player/player_document.h"
 
 #include <fmt/format.h>
 
@@ -11,13 +11,13 @@
 #include <optional>
 #include <vector>
 
-#include "commands/film_view.h"
-#include "commands/joint_parts.h"
-#include "commands/json_numbers.h"
-#include "commands/packed_numbers.h"
 #include "core/error.h"
 #include "core/interruption.h"
+#include "core/json_numbers.h"
 #include "core/printable.h"
+#include "film/film_view.h"
+#include "film/joint_parts.h"
+#include "player/packed_numbers.h"
 #include "render/appearance.h"
 #include "render/body_place.h"
 #include "render/link_items.h"
@@ -55,12 +55,12 @@ struct Paint {
 
 class PlayerDocument {
  public:
-  explicit PlayerDocument(TrajectorySource& source)
-      : source_(source),
-        reader_(source.reader()),
-        scene_(source.scene()),
-        view_(viewOf(source, source.scene().output.width, source.scene().output.height)),
-        appearance_(makeAppearance(source.drawnScene(), view_, kPixelsOfSize / view_.size())) {}
+  explicit PlayerDocument(FilmSource& motion)
+      : motion_(motion),
+        reader_(motion.reader()),
+        scene_(motion.scene()),
+        view_(viewOf(motion, motion.scene().output.width, motion.scene().output.height)),
+        appearance_(makeAppearance(motion.drawnScene(), view_, kPixelsOfSize / view_.size())) {}
 
   Json build(const std::function<void(long done)>& progress);
 
@@ -90,7 +90,7 @@ class PlayerDocument {
   void addGround(Json& document) const;
   double coilLength() const;
 
-  TrajectorySource& source_;
+  FilmSource& motion_;
   const TrajectoryReader& reader_;
   const Scene& scene_;
   const View view_;
@@ -278,7 +278,7 @@ void PlayerDocument::addForces(Json& document) const {
 }
 
 void PlayerDocument::addCamera(Json& document) const {
-  const Camera camera = cameraOf(source_, view_).at(source_.drawnFrameAt(0));
+  const Camera camera = cameraOf(motion_, view_).at(motion_.drawnFrameAt(0));
   document["camera"] = {{"position", numbersOf(camera.position)},
                         {"target", numbersOf(camera.target)},
                         {"up", numbersOf(camera.up)},
@@ -316,7 +316,7 @@ Json PlayerDocument::build(const std::function<void(long done)>& progress) {
   addBodies();
   const double radius = linkRadius(scene_, view_.bounds);
   addJoints(radius);
-  const Quat fromWorld = source_.worldFromDrawn().conjugate();
+  const Quat fromWorld = motion_.worldFromDrawn().conjugate();
   const std::string& method = reader_.header().method;
   Json document = {
       {"method", printableLine(method.substr(0, method.find('\n')))},
@@ -370,10 +370,10 @@ void requireStatesFit(const TrajectoryReader& reader, int runs) {
 
 }  // namespace
 
-std::string playerDocument(TrajectorySource& source, const TrajectoryReader* other,
+std::string playerDocument(FilmSource& motion, const TrajectoryReader* other,
                            const std::function<void(long done)>& progress) {
-  requireStatesFit(source.reader(), other ? 2 : 1);
-  PlayerDocument player(source);
+  requireStatesFit(motion.reader(), other ? 2 : 1);
+  PlayerDocument player(motion);
   Json document = player.build(progress);
   if (other) player.addOther(*other, document);
   std::string text;

@@ -1,4 +1,4 @@
-#include "commands/film_view.h"
+#include "film/film_view.h"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@ constexpr double kMaxWaiting = 1e6;  // states of bodies, 0.1 GB: of the frames 
 
 }  // namespace
 
-View viewOf(TrajectorySource& source, int width, int height) {
+View viewOf(FilmSource& source, int width, int height) {
   std::vector<ShownPush> pushes = findShownPushes(source.drawnScene(), source.drawnPushEvents(), [&source](long frame) {
     return source.drawnFrameAt(std::min(frame, source.frameCount() - 1));
   });
@@ -26,7 +26,7 @@ bool isSeenFromTheStart(const Scene& scene) {
   return scene.camera && frames * static_cast<double>(scene.bodies.size()) <= kMaxWaiting;
 }
 
-FilmCamera cameraOf(TrajectorySource& source, const View& view) {
+FilmCamera cameraOf(FilmSource& source, const View& view) {
   return {source.drawnScene(), view.camera, [&source](long number) { return source.drawnFrameAt(number); }};
 }
 

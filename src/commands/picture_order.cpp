@@ -1,0 +1,37 @@
+#include "commands/picture_order.h"
+
+#include <fmt/format.h>
+
+#include "commands/number_pair.h"
+#include "core/error.h"
+#include "film/drawing_memory.h"
+#include "overlay/caption_check.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kLargestSize = 16384;  // pixels; as in scene files
+
+PictureSize parseSize(const std::optional<std::string>& text, const Scene& scene) {
+  if (!text) return {scene.output.width, scene.output.height};
+  const auto size = parsePair(*text, 'x');
+  if (!size)
+    throw Error(ErrorKind::usage, "--size", fmt::format("found \"{}\"; allowed is WIDTHxHEIGHT, as 1280x720", *text));
+  for (const long edge : {size->first, size->second})
+    if (edge < 1 || edge > kLargestSize)
+      throw Error(ErrorKind::usage, "--size", fmt::format("found {}; allowed are 1 to {} pixels", edge, kLargestSize));
+  return {static_cast<int>(size->first), static_cast<int>(size->second)};
+}
+
+}  // namespace
+
+PictureOrder pictureOrderOf(const PictureOptions& options, const Scene& scene) {
+  PictureOrder order{parseSize(options.size, scene), options.shaders.value_or("")};
+  requireDrawingMemory(order.size.width, order.size.height);
+  requireRoomForWords(scene, order.size.width, order.size.height);
+  if (options.overlay) order.overlays = parseOverlays(*options.overlay);
+  if (order.overlays && order.overlays->plot == PlotKind::height) plottedBody(*order.overlays, scene);
+  return order;
+}
+
+}  // namespace cradle

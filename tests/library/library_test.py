@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""The installed libraries, as programs of others link them: examples/library is built from the installed tree alone.
+
+    library_test.py PROGRAM SOURCE_FOLDER BUILD_FOLDER CMAKE
+"""
+import os, shutil, subprocess, sys, tempfile, unittest
+
+PROGRAM, SOURCE, BUILD, CMAKE = (os.path.abspath(path) for path in sys.argv[1:5])
+SCENE = os.path.join(SOURCE, "scenes", "newtons_cradle.json")
+
+# What a program with a window has: functions of OpenGL, and a GLEW, of its own. None of them may be called.
+WINDOW = """
+#include <cstdlib>
+extern "C" {
+void glClear(unsigned) { std::abort(); }
+void glViewport(int, int, int, int) { std::abort(); }
+void* glXGetProcAddressARB(const unsigned char*) { std::abort(); }
+unsigned glewInit() { std::abort(); }
+void (*__glewActiveTexture)(unsigned) = nullptr;
+}
+"""
+PROJECT = """
+cmake_minimum_required(VERSION 3.25)
+project(window LANGUAGES CXX)
+find_package(Cradle 0.1 REQUIRED)
+add_executable(window %s window.cpp)
+target_link_libraries(window PRIVATE Cradle::render)
+"""
+
+
+def run(*command, **options):
+    done = subprocess.run(command, capture_output=True, text=True, **options)
+    if done.returncode != 0:
+        raise AssertionError("%s\n%s%s" % (" ".join(command), done.stdout[-4000:], done.stderr[-4000:]))
+    return done.stdout
+
+
+def names(path, *options):
+    return [line.split()[-1] for line in run("nm", *options, path).splitlines() if len(line.split()) >= 2]
+
+
+class Library(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.prefix = os.path.join(cls.folder, "installed")
+        run(CMAKE, "--install", BUILD, "--prefix", cls.prefix)
+        cls.example = cls.build(os.path.join(SOURCE, "examples", "library"), "example")
+
+    @classmethod
+    def build(cls, project, name):
+        folder = os.path.join(cls.folder, name)
+        run(CMAKE, "-S", project, "-B", folder, "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + cls.prefix, "-DCMAKE_BUILD_TYPE=Debug")
+        run(CMAKE, "--build", folder)
+        return folder
+
+    def archive(self, name):
+        found = [os.path.join(folder, name) for folder, _, files in os.walk(self.prefix) if name in files]
+        self.assertEqual(len(found), 1)
+        return found[0]
+
+    # A pendulum that is let go at the height of its hinge comes up to it again. The frame next to the turn is at most
+    # 1/120 s from it: -g t^2 / 2 = -3.4e-4 m. Energy is within 100 x accuracy of 0, of 20 J.
+    def test_pendulum_comes_up_again(self):
+        words = run(os.path.join(self.example, "pendulum")).split()
+        self.assertEqual(words[:3], ["bob:", "601", "frames,"])
+        self.assertGreater(float(words[6]), -4e-4)
+        self.assertLess(float(words[6]), 1e-4)
+        self.assertLess(abs(float(words[9])), 2e-6)
+
+    def test_trajectory_and_picture_are_those_of_the_program(self):
+        self.check_pictures(os.path.join(self.example, "pictures"))
+
+    def check_pictures(self, program):
+        folder = tempfile.mkdtemp(dir=self.folder)
+        path = lambda name: os.path.join(folder, name)
+        run(program, SCENE, path("a.sqlite"), path("a.ppm"))
+        run(PROGRAM, "-q", "simulate", SCENE, "-o", path("b.sqlite"))
+        self.assertIn("equal", run(PROGRAM, "compare", path("a.sqlite"), path("b.sqlite"), "--tolerance", "0"))
+        frames = int(run("sqlite3", path("b.sqlite"), "select count(*) from frame"))
+        run(PROGRAM, "-q", "render", path("b.sqlite"), "-o", path("b"), "--frames", str(frames - 1), "--overlay", "time")
+        run("ffmpeg", "-v", "error", "-i", path("b/frame_%06d.png" % (frames - 1)), "-pix_fmt", "rgb24", path("b.ppm"))
+        with open(path("a.ppm"), "rb") as ours, open(path("b.ppm"), "rb") as theirs:
+            ours, theirs = ours.read().split(None, 4), theirs.read().split(None, 4)
+        self.assertEqual(ours[:4], theirs[:4])
+        self.assertEqual(ours[4], theirs[4])
+
+    def test_a_program_with_a_window_keeps_its_functions(self):
+        project = os.path.join(self.folder, "window_project")
+        os.mkdir(project)
+        with open(os.path.join(project, "CMakeLists.txt"), "w") as file:
+            file.write(PROJECT % os.path.join(SOURCE, "examples", "library", "pictures.cpp"))
+        with open(os.path.join(project, "window.cpp"), "w") as file:
+            file.write(WINDOW)
+        self.check_pictures(os.path.join(self.build(project, "window"), "window"))
+
+    def test_simulation_needs_no_opengl(self):
+        used = names(os.path.join(self.example, "pendulum"))
+        self.assertTrue(any("simulate" in name for name in used))
+        self.assertEqual([name for name in used if "OSMesa" in name or "glew" in name.lower() or name.startswith("glX")], [])
+
+    def test_names_of_others_stay_inside(self):
+        for archive in ("libcradle_simulate.a", "libcradle_render.a"):
+            shown = names(self.archive(archive), "--extern-only", "--defined-only")
+            self.assertGreater(len(shown), 100)
+            self.assertEqual([name for name in shown if not name.startswith(("_Z", "DW.ref", "cradle"))], [])
+            self.assertEqual([name for name in shown if "5Eigen" in name], [])
+
+    def test_a_fault_is_an_exception_with_the_words_of_the_program(self):
+        scene = os.path.join(self.folder, "fault.json")
+        with open(scene, "w") as file:
+            file.write('{"schema": "cradle-scene/1", "name": "x", "duration": -1, "bodies": []}')
+        ours = subprocess.run([os.path.join(self.example, "pictures"), scene, os.path.join(self.folder, "f.sqlite"),
+                               os.path.join(self.folder, "f.ppm")], capture_output=True, text=True)
+        theirs = subprocess.run([PROGRAM, "check", scene], capture_output=True, text=True)
+        self.assertEqual((ours.returncode, ours.stderr), (3, theirs.stderr))
+        self.assertIn("/duration", ours.stderr)
+
+
+unittest.main(argv=sys.argv[:1])
