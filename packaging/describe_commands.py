@@ -59,9 +59,11 @@ def option_in_roff(words):
     """-o,--output TEXT REQUIRED -> names in bold, what follows in italics."""
     names, *rest = words.split()
     line = ", ".join("\\fB%s\\fR" % roff(name) for name in names.split(","))
-    kind = [word for word in rest[:1] if word in ("TEXT", "FLOAT", "INT", "UINT")]
-    if kind:
-        line += " \\fI%s\\fR" % kind[0].lower()
+    kind, _, default = rest[0].partition("=") if rest else ("", "", "")
+    if kind in ("TEXT", "FLOAT", "INT", "UINT"):
+        line += " \\fI%s\\fR" % kind.lower()
+    if default:
+        line += " (default %s)" % roff(default)
     if "REQUIRED" in rest:
         line += " (required)"
     return line

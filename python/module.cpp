@@ -5,10 +5,15 @@
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
+#include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <thread>
 #include <utility>
 
 namespace py = pybind11;
@@ -17,6 +22,42 @@ using namespace py::literals;
 namespace {
 
 using namespace cradle::v1;
+
+/// Work that Python waits for before it ends: a thread that came back to it afterwards would be taken apart inside C++.
+class Busy {
+ public:
+  Busy() {
+    ++count();  // before the look, so that Python waits for this one or this one sees the end
+    if (!isEnding()) return;
+    --count();
+    requireTime();
+  }
+  ~Busy() { --count(); }
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
+
+  /// Throws once Python ends.
+  static void requireTime() {
+    if (isEnding()) throw Error(ErrorKind::usage, "the interpreter ends, and this thread with it");
+  }
+
+  /// To be called when Python ends.
+  static void awaitOthers() {
+    isEnding() = true;
+    const py::gil_scoped_release released;
+    while (count() > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+
+ private:
+  static std::atomic<int>& count() {
+    static std::atomic<int> count = 0;
+    return count;
+  }
+  static std::atomic<bool>& isEnding() {
+    static std::atomic<bool> isEnding = false;
+    return isEnding;
+  }
+};
 
 /// The states of a trajectory, frame by frame, so that NumPy sees each kind as one array.
 struct States {
@@ -58,10 +99,13 @@ class Motion {
   /// What ask(trajectory) returns; other threads of Python go on meanwhile.
   template <class Ask>
   auto alone(const Ask& ask) const {
+    const Busy busy;
     const py::gil_scoped_release released;
     const std::lock_guard lock(shared_->mutex);
     return ask(shared_->trajectory);
   }
+
+  const std::shared_ptr<const std::vector<double>>& times() const { return shared_->times; }
 
   std::shared_ptr<const States> states() const {
     return alone([this](const Trajectory& trajectory) {
@@ -76,6 +120,8 @@ class Motion {
 
     std::mutex mutex;
     const Trajectory trajectory;
+    const std::shared_ptr<const std::vector<double>> times =
+        std::make_shared<const std::vector<double>>(trajectory.times());
     std::shared_ptr<const States> states;
   };
   std::shared_ptr<Shared> shared_;
@@ -89,23 +135,33 @@ class MotionFilm {
           return Film(trajectory, {width, height, overlay});
         })) {}
 
+  ~MotionFilm() {
+    const py::gil_scoped_release released;  // another film may be drawing
+    film_.reset();
+  }
+  MotionFilm(const MotionFilm&) = delete;
+  MotionFilm& operator=(const MotionFilm&) = delete;
+
   Picture draw(long frame) {
-    return motion_.alone([&](const Trajectory&) { return film_.draw(frame); });
+    return motion_.alone([&](const Trajectory&) { return film_->draw(frame); });
   }
 
  private:
   Motion motion_;
-  Film film_;
+  std::optional<Film> film_;
 };
 
-/// A read-only view of numbers that `owner` keeps.
-template <class Number>
-py::array viewOf(const std::shared_ptr<const States>& owner, const Number* numbers, std::vector<std::size_t> shape) {
-  const py::capsule kept(new std::shared_ptr<const States>(owner),
-                         [](void* pointer) { delete static_cast<std::shared_ptr<const States>*>(pointer); });
-  py::array_t<Number> view(std::move(shape), numbers, kept);
-  view.attr("setflags")("write"_a = false);
-  return view;
+py::array readOnly(py::array array) {
+  array.attr("setflags")("write"_a = false);
+  return array;
+}
+
+/// A view of numbers that `owner` keeps.
+template <class Number, class Owner>
+py::array viewOf(const std::shared_ptr<Owner>& owner, const Number* numbers, std::vector<std::size_t> shape) {
+  const py::capsule kept(new std::shared_ptr<Owner>(owner),
+                         [](void* pointer) { delete static_cast<std::shared_ptr<Owner>*>(pointer); });
+  return readOnly(py::array_t<Number>(std::move(shape), numbers, kept));
 }
 
 template <std::size_t Size>
@@ -121,7 +177,7 @@ py::array viewOfJoints(const Motion& motion, std::vector<double> States::*member
 }
 
 py::array copyOf(const Vector3& vector) {
-  return py::array_t<double>(3, vector.data());
+  return readOnly(py::array_t<double>(3, vector.data()));
 }
 
 /// Lets Python look for Ctrl-C now and then.
@@ -129,6 +185,7 @@ class SignalWatch {
  public:
   void look() {
     constexpr std::chrono::milliseconds kInterval(50);
+    Busy::requireTime();
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < kInterval) return;
     last_ = now;
@@ -142,11 +199,14 @@ class SignalWatch {
 
 void warn(const std::string& warning) {
   const py::gil_scoped_acquire acquired;
-  if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
+  if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 2)  // where simulate() is called from
+      != 0)
+    throw py::error_already_set();
 }
 
 Motion simulateScene(const Scene& scene, const std::function<void(double, double)>& progress) {
   for (const std::string& warning : scene.warnings()) warn(warning);
+  const Busy busy;
   const py::gil_scoped_release released;
   SignalWatch signals;
   const auto tell = [&](double time) {
@@ -164,6 +224,15 @@ Motion simulateScene(const Scene& scene, const std::function<void(double, double
 
 py::array arrayOf(const Picture& picture) {
   return py::array_t<std::uint8_t>({picture.height, picture.width, 3}, picture.pixels.data());
+}
+
+/// Copies of what does not change.
+py::object sameOf(const py::object& self) {
+  return self;
+}
+
+py::object sameOfDeep(const py::object& self, const py::dict& /*memo*/) {
+  return self;
 }
 
 const char* nameOf(ErrorKind kind) {
@@ -198,6 +267,7 @@ const char* nameOf(cradle::v1::Motion motion) {
 
 void addErrors(py::module_& module) {
   static const py::exception<Error> error(module, "Error");
+  error.attr("kind") = "";
   error.doc() = "What the caller can mend; `kind` is usage, scene, mesh, output, unstable or limit.";
   static const py::exception<FailedCheck> failedCheck(module, "FailedCheck", PyExc_AssertionError);
   failedCheck.doc() = "A check inside Cradle that failed: a bug in Cradle.";
@@ -216,6 +286,8 @@ void addErrors(py::module_& module) {
 
 void addScene(py::module_& module) {
   py::class_<Body>(module, "Body", "A body as the scene places it (SI units).")
+      .def("__copy__", sameOf)
+      .def("__deepcopy__", sameOfDeep, "memo"_a)
       .def_readonly("name", &Body::name)
       .def_property_readonly(
           "motion", [](const Body& body) { return nameOf(body.motion); }, "dynamic, static or driven")
@@ -225,12 +297,27 @@ void addScene(py::module_& module) {
       .def_property_readonly(
           "inertia_tensor",
           [](const Body& body) {
-            return py::array_t<double>({3, 3}, body.inertiaTensor[0].data());
+            return readOnly(py::array_t<double>({3, 3}, body.inertiaTensor[0].data()));
           },
           "kg m^2, about the centre of mass, axes of the body's frame")
+      .def_property_readonly(
+          "position", [](const Body& body) { return copyOf(body.position); },
+          "m, world, of the center of mass at the start")
+      .def_property_readonly(
+          "orientation", [](const Body& body) { return readOnly(py::array_t<double>(4, body.orientation.data())); },
+          "worldFromBody as w, x, y, z, at the start")
+      .def_property_readonly(
+          "linear_velocity", [](const Body& body) { return copyOf(body.linearVelocity); }, "m/s, at the start")
+      .def_property_readonly(
+          "angular_velocity", [](const Body& body) { return copyOf(body.angularVelocity); },
+          "rad/s, world, at the start")
       .def("__repr__", [](const Body& body) { return "<cradle.Body " + body.name + ">"; });
   py::class_<Scene>(module, "Scene", "A scene: checked, its meshes read and their mass properties computed.")
-      .def_static("load", &Scene::load, "path"_a, py::call_guard<py::gil_scoped_release>())
+      .def("__copy__", sameOf)
+      .def("__deepcopy__", sameOfDeep, "memo"_a)
+      .def_static(
+          "load", [](const std::filesystem::path& path) { return Scene::load(path.string()); }, "path"_a,
+          py::call_guard<py::gil_scoped_release>())
       .def_static("parse", &Scene::parse, "text"_a, "path"_a = "scene.json", py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("name", &Scene::name)
       .def_property_readonly("text", &Scene::text)
@@ -243,6 +330,8 @@ void addScene(py::module_& module) {
 
 void addEvent(py::module_& module) {
   py::class_<Event>(module, "Event", "An impact, or another change of the motion between frames.")
+      .def("__copy__", sameOf)
+      .def("__deepcopy__", sameOfDeep, "memo"_a)
       .def_readonly("time", &Event::time, "s")
       .def_readonly("kind", &Event::kind)
       .def_readonly("body_a", &Event::bodyA, "index into all_bodies")
@@ -253,9 +342,12 @@ void addEvent(py::module_& module) {
           "normal", [](const Event& event) { return copyOf(event.normal); }, "unit, from A to B")
       .def_readonly("impulse", &Event::impulse, "N s")
       .def("__repr__", [](const Event& event) {
-        return "<cradle.Event " + event.kind + " at " + std::to_string(event.time) + " s>";
+        return py::str("<cradle.Event {} of bodies {} and {} at {:.6g} s>")
+            .format(event.kind, event.bodyA, event.bodyB, event.time);
       });
   py::class_<ContactForce>(module, "ContactForce", "What body A does to body B by a contact that lasts.")
+      .def("__copy__", sameOf)
+      .def("__deepcopy__", sameOfDeep, "memo"_a)
       .def_readonly("contact", &ContactForce::contact)
       .def_readonly("body_a", &ContactForce::bodyA)
       .def_readonly("body_b", &ContactForce::bodyB)
@@ -266,7 +358,11 @@ void addEvent(py::module_& module) {
       .def_property_readonly(
           "torque", [](const ContactForce& force) { return copyOf(force.torque); }, "N m, about point")
       .def_property_readonly(
-          "point", [](const ContactForce& force) { return copyOf(force.point); }, "m, world");
+          "point", [](const ContactForce& force) { return copyOf(force.point); }, "m, world")
+      .def("__repr__", [](const ContactForce& force) {
+        return py::str("<cradle.ContactForce {} of body {} on body {}>")
+            .format(copyOf(force.force), force.bodyA, force.bodyB);
+      });
 }
 
 void addTrajectory(py::module_& module) {
@@ -274,14 +370,14 @@ void addTrajectory(py::module_& module) {
                           "impact", friction, "friction", damping, "damping", numerical, "numerical", work, "work",
                           momentum, "momentum", angularMomentum, "angular_momentum");
   py::class_<Motion>(module, "Trajectory", "A motion: states at frames, events between them, energies.")
-      .def(py::init([](const std::string& path) { return Motion(Trajectory::open(path)); }), "path"_a)
+      .def("__copy__", sameOf)
+      .def("__deepcopy__", sameOfDeep, "memo"_a)
+      .def(py::init([](const std::filesystem::path& path) { return Motion(Trajectory::open(path.string())); }),
+           "path"_a)
       .def(py::init<const Motion&>(), "other"_a)
       .def_property_readonly(
           "times",
-          [](const Motion& motion) {
-            const std::vector<double> times = motion.alone([](const Trajectory& told) { return told.times(); });
-            return py::array_t<double>(static_cast<py::ssize_t>(times.size()), times.data());
-          },
+          [](const Motion& motion) { return viewOf(motion.times(), motion.times()->data(), {motion.times()->size()}); },
           "s: (frames)")
       .def_property_readonly(
           "positions", [](const Motion& motion) { return viewOfBodies(motion, &States::positions); },
@@ -346,8 +442,8 @@ void addTrajectory(py::module_& module) {
           [](const Motion& motion) { return motion.alone([](const Trajectory& told) { return told.sceneText(); }); })
       .def(
           "save",
-          [](const Motion& motion, const std::string& path) {
-            motion.alone([&path](const Trajectory& told) { told.save(path); });
+          [](const Motion& motion, const std::filesystem::path& path) {
+            motion.alone([&path](const Trajectory& told) { told.save(path.string()); });
           },
           "path"_a, "Writes a trajectory file.")
       .def(
@@ -357,9 +453,15 @@ void addTrajectory(py::module_& module) {
 }
 
 void addFilm(py::module_& module) {
-  py::class_<MotionFilm>(module, "Film", "Draws pictures of a trajectory.")
-      .def(py::init<const Motion&, int, int, const std::string&>(), "trajectory"_a, "width"_a = 0, "height"_a = 0,
-           "overlay"_a = "")
+  py::class_<MotionFilm>(module, "Film",
+                         "Draws pictures of a trajectory: (width, height) pixels, by default the scene's.")
+      .def(py::init([](const Motion& motion, std::optional<std::array<int, 2>> size, const std::string& overlay) {
+             if (size && ((*size)[0] == 0 || (*size)[1] == 0))
+               throw Error(ErrorKind::usage, "size: found 0; allowed are 1 to 16384 pixels");
+             const auto [width, height] = size.value_or(std::array<int, 2>{0, 0});
+             return std::make_unique<MotionFilm>(motion, width, height, overlay);
+           }),
+           "trajectory"_a, "size"_a = py::none(), "overlay"_a = "")
       .def(
           "draw", [](MotionFilm& film, long frame) { return arrayOf(film.draw(frame)); }, "frame"_a,
           "The picture of a frame: (height, width, 3) of uint8, sRGB.");
@@ -375,5 +477,6 @@ PYBIND11_MODULE(_cradle, module) {
   addTrajectory(module);
   addFilm(module);
   module.def("simulate", &simulateScene, "scene"_a, "progress"_a = nullptr);
+  module.def("_await_others", &Busy::awaitOthers);
   module.attr("__version__") = CRADLE_VERSION;
 }

@@ -28,9 +28,10 @@ class Film {
   explicit Film(const Trajectory& trajectory, const PictureOptions& options = {});
   ~Film();
   Film(Film&&) noexcept;
+  Film& operator=(Film&&) noexcept;
 
   /// The picture of frame `number`; in ascending order the next one is drawn as far as it differs. Throws Error(usage)
-  /// if there is no such frame.
+  /// if there is no such frame, or the film was moved from.
   Picture draw(long number);
 
  private:

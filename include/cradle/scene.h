@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cradle/error.h"
@@ -50,11 +51,17 @@ class Scene {
   int pictureHeight() const;                // pixels
   const std::vector<Body>& bodies() const;  // copies written out, in the order of the text
 
+  std::vector<int> movingBodies() const;    // indices of those that are dynamic or driven: Frame::states
+  std::vector<std::string> joints() const;  // names of hinges, then of sliders: Frame::joints
+
   /// What the user should know about the scene that is no error.
   const std::vector<std::string>& warnings() const;
 
   struct Content;
   const Content& content() const { return *content_; }
+
+  Scene(const Scene&) = default;  // for moves as well: a scene always has its content
+  Scene& operator=(const Scene&) = default;
 
  private:
   explicit Scene(std::shared_ptr<const Content> content) : content_(std::move(content)) {}

@@ -96,12 +96,15 @@ class Trajectory {
   const std::map<std::string, std::string>& meta() const;
 
   /// Writes it as a trajectory file, which the program reads; a trajectory of that name is replaced when all is
-  /// written. Throws Error(output).
+  /// written. Throws Error(output), also if another kind of file is there, or the unfinished trajectory of
+  /// a run; Error(usage) if this one is unfinished.
   void save(const std::string& path) const;
 
   struct Content;
   const std::shared_ptr<Content>& content() const { return content_; }
   explicit Trajectory(std::shared_ptr<Content> content) : content_(std::move(content)) {}
+  Trajectory(const Trajectory&) = default;  // for moves as well: a trajectory always has its content
+  Trajectory& operator=(const Trajectory&) = default;
 
  private:
   std::shared_ptr<Content> content_;

@@ -7,9 +7,14 @@
 
 All numbers are in SI units; docs/python.md says more.
 """
+import atexit
 import base64
+import collections.abc
 import json
+import operator
 import os
+import threading
+import weakref
 
 from . import _cradle
 from ._cradle import Body, ContactForce, Error, Event, FailedCheck, Film, Scene, __version__
@@ -23,6 +28,8 @@ class Trajectory(_cradle.Trajectory):
 
     Arrays are views of one copy of the states, which is read when the first of them is asked for.
     """
+
+    __slots__ = ()
 
     @property
     def bodies(self):
@@ -52,13 +59,18 @@ class Trajectory(_cradle.Trajectory):
                 "</iframe>" % page)
 
     def __repr__(self):
-        return "<cradle.Trajectory of %d frames>" % len(self.times)
+        return "<cradle.Trajectory of %d frames>" % len(self)
+
+    def __len__(self):
+        return len(self.times)
 
 
 def _plain(value):
-    """Arrays and numbers of NumPy as JSON has them."""
+    """Arrays and numbers of NumPy, and paths, as JSON has them."""
     if hasattr(value, "tolist"):
         return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
     raise TypeError("%r is nothing that a scene can hold" % (value,))
 
 
@@ -70,29 +82,58 @@ def load(scene):
     """
     if isinstance(scene, Scene):
         return scene
-    if isinstance(scene, dict):
-        return Scene.parse(json.dumps(scene, default=_plain))
-    return Scene.load(os.fspath(scene))
+    if isinstance(scene, collections.abc.Mapping):
+        return Scene.parse(json.dumps(dict(scene), default=_plain), "scene")
+    if not isinstance(scene, (str, bytes, os.PathLike)):
+        raise TypeError("a scene is a path or a dict, not %r" % (scene,))
+    return Scene.load(scene)
 
 
 def simulate(scene, progress=None):
     """Simulates a scene (a Scene, a path or a dict), and returns its Trajectory.
 
-    `progress(time, duration)` is called after each frame, in s. Other threads of Python run meanwhile. Warnings are
+    `progress(time, duration)` is called after each frame, and once a second inside one that takes longer; in s. Other threads of Python run meanwhile. Warnings are
     raised as UserWarning; errors as Error; Ctrl-C ends it.
     """
     return Trajectory(_cradle.simulate(load(scene), progress))
+
+
+_latest = (None, None, None)  # what has drawn the latest picture: its trajectory, how, and the film
+_latest_lock = threading.Lock()
+atexit.register(_cradle._await_others)
+
+
+def _size_of(size):
+    if size is None:
+        return None
+    try:
+        width, height = (operator.index(length) for length in size)
+    except (TypeError, ValueError):
+        raise TypeError("size is (width, height) in pixels, as (640, 360), not %r" % (size,)) from None
+    return width, height
 
 
 def render(trajectory, frame, size=None, overlay=""):
     """The picture of a frame as an array (height, width, 3) of uint8, sRGB.
 
     `size` is (width, height) in pixels; by default the scene's. `overlay` is that of `cradle render --overlay`, as
-    "time,contacts". What draws the picture is kept for the next one of that trajectory.
+    "time,contacts". What has drawn the latest picture (some 35 MB) is kept for the next one of that trajectory.
     """
-    width, height = size or (0, 0)
-    key = (width, height, overlay)
-    kept = getattr(trajectory, "_film", None)
-    if kept is None or kept[0] != key:
-        kept = trajectory._film = (key, Film(trajectory, width, height, overlay))
-    return kept[1].draw(frame)
+    global _latest
+    if not isinstance(trajectory, _cradle.Trajectory):
+        raise TypeError("a cradle.Trajectory is drawn, not %r" % (trajectory,))
+    how = (_size_of(size), overlay)
+    with _latest_lock:
+        drawn, drawn_how, film = _latest
+        if film is None or drawn() is not trajectory or drawn_how != how:
+            film = None
+            _latest = (None, None, None)  # the old one goes first
+            film = Film(trajectory, *how)
+            _latest = (weakref.ref(trajectory, _forget), how, film)
+        return film.draw(operator.index(frame))
+
+
+def _forget(reference):
+    global _latest
+    if _latest[0] is reference:
+        _latest = (None, None, None)

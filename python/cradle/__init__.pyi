@@ -1,5 +1,6 @@
 import os
-from typing import Any, Callable, List, Optional, Tuple, Union
+from collections.abc import Mapping
+from typing import Any, Callable, List, Optional, Sequence, Union
 
 import numpy
 import pandas
@@ -15,10 +16,11 @@ class Trajectory(_cradle.Trajectory):
     @property
     def bodies(self) -> List[str]: ...
     def to_pandas(self) -> pandas.DataFrame: ...
+    def __len__(self) -> int: ...
 
-SceneSource = Union[Scene, str, os.PathLike[str], dict[str, Any]]
+SceneSource = Union[Scene, str, bytes, os.PathLike[str], Mapping[str, Any]]
 
 def load(scene: SceneSource) -> Scene: ...
 def simulate(scene: SceneSource, progress: Optional[Callable[[float, float], None]] = None) -> Trajectory: ...
-def render(trajectory: Trajectory, frame: int, size: Optional[Tuple[int, int]] = None,
+def render(trajectory: Trajectory, frame: int, size: Optional[Sequence[int]] = None,
            overlay: str = "") -> NDArray[numpy.uint8]: ...

@@ -6,11 +6,10 @@
 #include "core/error.h"
 #include "film/drawing_memory.h"
 #include "overlay/caption_check.h"
+#include "scene/ranges.h"
 
 namespace cradle {
 namespace {
-
-constexpr int kLargestSize = 16384;  // pixels; as in scene files
 
 PictureSize parseSize(const std::optional<std::string>& text, const Scene& scene) {
   if (!text) return {scene.output.width, scene.output.height};
@@ -18,8 +17,9 @@ PictureSize parseSize(const std::optional<std::string>& text, const Scene& scene
   if (!size)
     throw Error(ErrorKind::usage, "--size", fmt::format("found \"{}\"; allowed is WIDTHxHEIGHT, as 1280x720", *text));
   for (const long edge : {size->first, size->second})
-    if (edge < 1 || edge > kLargestSize)
-      throw Error(ErrorKind::usage, "--size", fmt::format("found {}; allowed are 1 to {} pixels", edge, kLargestSize));
+    if (edge < 1 || edge > kLargestPicture)
+      throw Error(ErrorKind::usage, "--size",
+                  fmt::format("found {}; allowed are 1 to {} pixels", edge, kLargestPicture));
   return {static_cast<int>(size->first), static_cast<int>(size->second)};
 }
 

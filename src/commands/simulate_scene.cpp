@@ -89,14 +89,6 @@ void apply(const SceneOptions& options, Scene& scene) {
     throw Error(ErrorKind::usage, options.timeStep ? "--time-step" : "--duration", *fault);
 }
 
-/// A slip of the command line does not cost a file of another kind, the scene's own for one.
-void requireNoOtherFile(const std::string& path) {
-  std::error_code failed;
-  const auto size = std::filesystem::file_size(path, failed);
-  if (failed || size == 0 || isTrajectoryFile(path)) return;
-  throw Error(ErrorKind::output, path, "is there, and is no trajectory: it is not replaced; give another name");
-}
-
 void checkAccuracy(const Scene& scene, const std::string& output, bool prints, bool quiet) {
   const TrajectoryReader run(output);
   Progress progress("Checking", "frames", run.frameCount(), quiet);

@@ -49,6 +49,6 @@ class FailedCheck : public std::logic_error {
 
 }  // namespace cradle
 
-/// For mistakes of our own, not the user's: always on, stops at once.
+/// For mistakes of our own, not the user's: always on; throws FailedCheck.
 #define CRADLE_CHECK(condition) \
   ((condition) ? static_cast<void>(0) : ::cradle::failCheck(#condition, __FILE__, __LINE__))

@@ -25,7 +25,7 @@ class FilmDrawer {
   /// `motion` must outlive this object. Without a `view`, that of the film. Throws what Renderer throws, and reading.
   FilmDrawer(FilmSource& motion, const PictureOrder& order, const std::optional<View>& view = {});
 
-  /// The picture of a frame. Frames before are not to be asked for again.
+  /// The picture of a frame. Of a motion that is being simulated, frames before are not to be asked for again.
   Image draw(long number);
 
  private:

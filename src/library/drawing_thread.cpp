@@ -3,20 +3,26 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cfenv>
+#include <cstdlib>
 #include <thread>
 #include <utility>
 
 #include "core/error.h"
+#include "render/offscreen_context.h"
 
 namespace cradle::v1 {
 
 namespace {
 
-std::atomic<pid_t> owner = 0;  // the process that draws
+std::atomic<pid_t> owner = 0;        // the process that draws
+std::atomic<bool> hasEnded = false;  // Mesa takes its own apart behind that
 
 }  // namespace
 
 DrawingThread& DrawingThread::ofProcess() {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   if (isLost())
     throw cradle::Error(
         cradle::ErrorKind::limit, "OpenGL",
@@ -24,12 +30,16 @@ DrawingThread& DrawingThread::ofProcess() {
         "alone, or start the other as a program of its own (Python's multiprocessing: spawn)");
   static DrawingThread* const thread =
       new DrawingThread;  // never destroyed: films may go with a program's last objects
-  owner = getpid();
+  if (owner == 0) {
+    thread->run([] { OffscreenContext(); });  // opens Mesa, whose handlers of the end run behind those that come now
+    std::atexit([] { hasEnded = true; });
+    owner = getpid();
+  }
   return *thread;
 }
 
 bool DrawingThread::isLost() {
-  return owner != 0 && owner != getpid();
+  return hasEnded || (owner != 0 && owner != getpid());
 }
 
 DrawingThread::DrawingThread() {
@@ -45,6 +55,7 @@ void DrawingThread::put(std::function<void()> task) {
 }
 
 void DrawingThread::work() {
+  std::fesetenv(FE_DFL_ENV);  // pictures do not depend on who began
   for (;;) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !tasks_.empty(); });

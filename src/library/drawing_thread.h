@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <future>
+#include <memory>
 #include <mutex>
 
 namespace cradle::v1 {
@@ -16,15 +17,15 @@ class DrawingThread {
   /// process that has drawn: there Mesa waits for threads that are the parent's.
   static DrawingThread& ofProcess();
 
-  /// Whether this process is such a child.
+  /// Whether contexts are gone: in such a child, and when the process ends.
   static bool isLost();
 
   /// Returns, or throws, what work() does there.
   template <class Work>
   auto run(const Work& work) {
-    std::packaged_task<decltype(work())()> task(std::ref(work));
-    auto result = task.get_future();
-    put([&task] { task(); });
+    const auto task = std::make_shared<std::packaged_task<decltype(work())()>>(std::ref(work));
+    auto result = task->get_future();
+    put([task] { (*task)(); });
     return result.get();
   }
 

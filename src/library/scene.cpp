@@ -87,6 +87,20 @@ const std::vector<Body>& Scene::bodies() const {
   return content_->bodies;
 }
 
+std::vector<int> Scene::movingBodies() const {
+  std::vector<int> moving;
+  for (std::size_t i = 0; i < content_->bodies.size(); ++i)
+    if (content_->bodies[i].motion != Motion::fixed) moving.push_back(static_cast<int>(i));
+  return moving;
+}
+
+std::vector<std::string> Scene::joints() const {
+  std::vector<std::string> names;
+  for (const Hinge& hinge : content_->loaded.scene.hinges) names.push_back(hinge.name);
+  for (const Slider& slider : content_->loaded.scene.sliders) names.push_back(slider.name);
+  return names;
+}
+
 const std::vector<std::string>& Scene::warnings() const {
   return content_->loaded.warnings;
 }

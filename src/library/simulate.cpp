@@ -42,7 +42,7 @@ void writeAsWell(TrajectoryWriter& writer, SimulationSink& sink) {
 }  // namespace
 
 Trajectory simulate(const Scene& scene, const Callbacks& callbacks) {
-  return translated([&] {
+  return translated([scene, callbacks] {  // copies: a callback may give the caller's others
     const cradle::Scene& content = scene.content().loaded.scene;
     refuseUnsupported(content);
     World world(content);
@@ -56,7 +56,7 @@ Trajectory simulate(const Scene& scene, const Callbacks& callbacks) {
 }
 
 void simulateOnly(const Scene& scene, const Callbacks& callbacks) {
-  translated([&] {
+  translated([scene, callbacks] {
     SimulationSink sink = sinkOf(callbacks);
     if (callbacks.frame) sink.contact = [](const LastingContact&) {};  // else frames have no contact forces
     cradle::simulate(scene.content().loaded.scene, sink);

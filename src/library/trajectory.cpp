@@ -1,8 +1,10 @@
 #include <cradle/trajectory.h>
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <utility>
 
+#include "core/output_path.h"
 #include "library/scene_content.h"
 #include "library/trajectory_content.h"
 #include "library/translated.h"
@@ -109,7 +111,17 @@ const std::map<std::string, std::string>& Trajectory::meta() const {
 }
 
 void Trajectory::save(const std::string& path) const {
-  translated([&] { copyTrajectory(*content_->reader, path); });
+  translated([&] {
+    if (!content_->reader->isFinished())
+      throw cradle::Error(
+          cradle::ErrorKind::usage, content_->reader->path(),
+          "is the trajectory of a run that has not ended; only whole ones are saved under another name");
+    requireNoOtherFile(path);
+    if (std::filesystem::exists(partPath(path)))
+      throw cradle::Error(cradle::ErrorKind::output, partPath(path),
+                          "is the unfinished trajectory of a run; go on with it, remove it, or choose another name");
+    copyTrajectory(*content_->reader, path);
+  });
 }
 
 }  // namespace cradle::v1

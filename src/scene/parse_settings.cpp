@@ -10,9 +10,8 @@ namespace {
 
 constexpr const char* kSchema = "cradle-scene/1";
 constexpr Range kAccuracies{kFinestAccuracy, kCoarsestAccuracy};
-constexpr int kLargestPicture = 16384;  // pixels; Mesa's limit
-constexpr double kMaxSteps = 1e10;      // a day of computing for one body; times still differ from step to step
-constexpr double kMaxFrames = 1e9;      // a year at 30 a second; keeps frame numbers far from overflow
+constexpr double kMaxSteps = 1e10;  // a day of computing for one body; times still differ from step to step
+constexpr double kMaxFrames = 1e9;  // a year at 30 a second; keeps frame numbers far from overflow
 
 void parseSchema(ObjectReader& root) {
   const auto field = root.require("schema");

@@ -53,4 +53,6 @@ constexpr Range kAngles{-1e9, 1e9};           // degrees: a double holds 1e-7 of
 constexpr Range kTurns{-1e9, 1e9};            // rad, of a hinge
 constexpr Range kIntensities{0, 1e6};         // of light: pictures are white from 1e3 on
 
+constexpr int kLargestPicture = 16384;  // pixels, of width and height; Mesa's limit
+
 }  // namespace cradle

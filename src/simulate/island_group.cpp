@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "simulate/life_sign.h"
 #include "simulate/plan/near_spheres.h"
 #include "simulate/shared_islands.h"
 #include "simulate/thresholds.h"
@@ -206,8 +207,9 @@ void IslandGroup::moveAll(double end, const std::function<void(double time)>& re
   for (Island& island : islands_)
     if (!island.hasMoved) waiting.push_back(&island);
   const std::vector<double> times = timesUntil(end);
+  const SharedLifeSign signs(reached);
   shareIslands(threads_, waiting.size(), evaluationsOfWindow_,
-               [&](int thread, std::size_t i) { move(*waiting[i], times, thread == 0 ? reached : nullptr); });
+               [&](int thread, std::size_t i) { move(*waiting[i], times, signs.ofThread(thread)); });
   for (const Island* island : waiting)
     if (island->failure) std::rethrow_exception(island->failure);
 }
@@ -448,6 +450,7 @@ void IslandGroup::move(Island& island, const std::vector<double>& times,
       if (tellsContacts_ && isFrame) island.snapshots.back().contacts = island.solver->contactWrenches();
     }
     if (islands_.size() > kManyIslands) island.solver->releaseScratch();
+  } catch (const SharedLifeSign::Over&) {  // another one tells why
   } catch (const Error& error) {
     (error.kind() == ErrorKind::interrupted ? island.failure : island.fault) = std::current_exception();
   } catch (...) {

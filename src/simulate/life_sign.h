@@ -2,6 +2,7 @@
 
 #include <time.h>
 
+#include <atomic>
 #include <functional>
 #include <utility>
 
@@ -37,6 +38,39 @@ class LifeSign {
 
   std::function<void(double time)> tell_;
   double last_ = 0;  // s
+};
+
+/// The life signs of islands that several threads move: the first thread gives them, and what `tell` throws ends all.
+class SharedLifeSign {
+ public:
+  /// Thrown in islands of other threads, and in later ones, once `tell` has thrown.
+  struct Over {};
+
+  /// `tell` may be none.
+  explicit SharedLifeSign(const std::function<void(double time)>& tell) {
+    if (!tell) return;
+    other_ = [this](double) {
+      if (isOver_) throw Over();
+    };
+    first_ = [this, &tell](double time) {
+      other_(time);
+      try {
+        tell(time);
+      } catch (...) {
+        isOver_ = true;
+        throw;
+      }
+    };
+  }
+  SharedLifeSign(const SharedLifeSign&) = delete;
+  SharedLifeSign& operator=(const SharedLifeSign&) = delete;
+
+  /// To be called by islands that this thread moves, after each step; may be none.
+  const std::function<void(double time)>& ofThread(int thread) const { return thread == 0 ? first_ : other_; }
+
+ private:
+  std::atomic<bool> isOver_ = false;
+  std::function<void(double)> first_, other_;
 };
 
 }  // namespace cradle

@@ -11,6 +11,7 @@
 #include "constraints/invariants.h"
 #include "core/error.h"
 #include "core/interruption.h"
+#include "simulate/life_sign.h"
 #include "simulate/shared_islands.h"
 #include "simulate/start_overlaps.h"
 #include "simulate/thresholds.h"
@@ -160,6 +161,7 @@ std::vector<const VectorX*> World::moveTo(double time, const std::function<void(
       const double ofDone = static_cast<double>(done.load()) * (time - lastTime_);
       reached(lastTime_ + (ofDone + std::min(now, time) - lastTime_) / static_cast<double>(states.size()));
     };
+  const SharedLifeSign signs(tellMean);
   std::vector<std::exception_ptr> failures(solvers_.size());
   const auto evaluationsSoFar = [this] {
     return std::accumulate(solvers_.begin(), solvers_.end(), 0L,
@@ -168,7 +170,8 @@ std::vector<const VectorX*> World::moveTo(double time, const std::function<void(
   const long before = evaluationsSoFar();
   shareIslands(threads_, solvers_.size(), evaluationsOfFrame_, [&](int thread, std::size_t i) {
     try {
-      states[i] = &solvers_[i]->stateAt(time, thread == 0 ? tellMean : nullptr);
+      states[i] = &solvers_[i]->stateAt(time, signs.ofThread(thread));
+    } catch (const SharedLifeSign::Over&) {  // another one tells why
     } catch (...) {
       failures[i] = std::current_exception();
     }

@@ -15,7 +15,7 @@ void copyTrajectory(const TrajectoryReader& trajectory, const std::string& path)
   }
   for (const Event& event : trajectory.events()) writer.append(event);
   for (const CameraPose& camera : trajectory.cameras()) writer.append(camera);
-  writer.finish(trajectory.cost());
+  writer.finishAs(trajectory);
 }
 
 }  // namespace cradle

@@ -6,8 +6,8 @@
 
 namespace cradle {
 
-/// Writes the frames, events, contacts and cameras of a trajectory as another file. Throws what TrajectoryWriter
-/// throws, and reading, and Error(interrupted).
+/// Writes a finished trajectory, with its cameras and all that is known of it, as another file. Throws what
+/// TrajectoryWriter throws, and reading, and Error(interrupted).
 void copyTrajectory(const TrajectoryReader& trajectory, const std::string& path);
 
 }  // namespace cradle

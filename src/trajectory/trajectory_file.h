@@ -16,6 +16,7 @@
 namespace cradle {
 
 class Database;
+class TrajectoryReader;
 
 /// How often a running simulation's frames become visible to others, and safe from its sudden end.
 constexpr std::chrono::milliseconds kCommitInterval{500};
@@ -59,6 +60,9 @@ class TrajectoryWriter {
   /// Completes the file and gives it its name, if it is to have one. There must be a frame. Throws Error(output).
   void finish(const RunCost& cost);
 
+  /// The same for a copy of a finished trajectory: with its cost, and what became known of it.
+  void finishAs(const TrajectoryReader& copied);
+
   /// Ends a run that is not finished, as the destructor does, and says where its frames are: FILE.part, or empty if
   /// nothing was kept (or the run is finished).
   std::string keptPath();
@@ -69,6 +73,7 @@ class TrajectoryWriter {
   void begin(std::unique_ptr<Database> database, const TrajectoryHeader& header);
   void nameColumns(const TrajectoryHeader& header);
   void beginTransaction();
+  void complete();
   void dropBehind(const Checkpoint& checkpoint);
   void readUntil(const Checkpoint& checkpoint);
   std::unique_ptr<Database> release();
@@ -176,5 +181,9 @@ bool isDatabaseFile(const std::string& path);
 
 /// Whether it is one of cradle's, complete or not.
 bool isTrajectoryFile(const std::string& path);
+
+/// Throws Error(output) if a file is there that is neither empty nor a trajectory: a slip of the hand does not cost a
+/// file of another kind, the scene's own for one.
+void requireNoOtherFile(const std::string& path);
 
 }  // namespace cradle

@@ -595,4 +595,11 @@ bool isTrajectoryFile(const std::string& path) {
   return id == kApplicationId;
 }
 
+void requireNoOtherFile(const std::string& path) {
+  std::error_code failed;
+  const auto size = std::filesystem::file_size(path, failed);
+  if (failed || size == 0 || isTrajectoryFile(path)) return;
+  throw Error(ErrorKind::output, path, "is there, and is no trajectory: it is not replaced; give another name");
+}
+
 }  // namespace cradle

@@ -472,12 +472,28 @@ void TrajectoryWriter::flush() {
 }
 
 void TrajectoryWriter::finish(const RunCost& cost) {
-  CRADLE_CHECK(session_ && transactionWhole_ && framesAppended_ > 0);
-  session_->database->execute("DELETE FROM checkpoint");
+  CRADLE_CHECK(session_);
   insertMeta(*session_->database, "cpuSeconds", cost.cpuSeconds);
   insertMeta(*session_->database, "evaluations", cost.evaluations);
   insertMeta(*session_->database, "corrections", countsAsJson(cost.corrections));
   insertMeta(*session_->database, "promise", cost.promise);
+  complete();
+}
+
+void TrajectoryWriter::finishAs(const TrajectoryReader& copied) {
+  CRADLE_CHECK(session_ && copied.isFinished());
+  const RunCost cost = copied.cost();
+  insertMeta(*session_->database, "cpuSeconds", cost.cpuSeconds);
+  insertMeta(*session_->database, "evaluations", cost.evaluations);
+  for (const char* key : {"corrections", "promise", kHorizonKey})
+    if (const auto known = copied.meta().find(key); known != copied.meta().end())
+      insertMeta(*session_->database, key, known->second);
+  complete();
+}
+
+void TrajectoryWriter::complete() {
+  CRADLE_CHECK(transactionWhole_ && framesAppended_ > 0);
+  session_->database->execute("DELETE FROM checkpoint");
   insertMeta(*session_->database, "stateHash", stateHash_.hex());
   session_->database->commit();
   framesCommitted_ = framesAppended_;

@@ -19,6 +19,35 @@ unsigned glewInit() { std::abort(); }
 void (*__glewActiveTexture)(unsigned) = nullptr;
 }
 """
+# A film that goes with the last objects of a program; and one that is linked to take denormal numbers for 0.
+LAST = """
+#include <cradle/render.h>
+#include <cradle/simulate.h>
+#include <cstdio>
+#include <optional>
+namespace cr = cradle::v1;
+std::optional<cr::Film> film;
+int main(int, char** argv) {
+  const cr::Trajectory motion = cr::simulate(cr::Scene::load(argv[1]));
+  film.emplace(motion, cr::PictureOptions{64, 36, ""});
+  film->draw(0);
+  film = cr::Film(motion, {32, 18});
+  cr::Film other = std::move(*film);
+  try {
+    film->draw(0);
+  } catch (const cr::Error&) {
+    std::printf("%s %d", motion.meta().at("stateHash").c_str(), other.draw(1).width);
+  }
+}
+"""
+LAST_PROJECT = """
+cmake_minimum_required(VERSION 3.25)
+project(last LANGUAGES CXX)
+find_package(Cradle 0.1 REQUIRED)
+add_executable(last last.cpp)
+target_link_libraries(last PRIVATE Cradle::render)
+target_link_options(last PRIVATE -ffast-math)
+"""
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)
 project(window LANGUAGES CXX)
@@ -95,6 +124,18 @@ class Library(unittest.TestCase):
             file.write(WINDOW)
         self.check_pictures(os.path.join(self.build(project, "window"), "window"))
 
+    def test_films_end_with_the_program_and_bits_are_ours(self):
+        project = os.path.join(self.folder, "last_project")
+        os.mkdir(project)
+        for name, text in (("CMakeLists.txt", LAST_PROJECT), ("last.cpp", LAST)):
+            with open(os.path.join(project, name), "w") as file:
+                file.write(text)
+        scene = os.path.join(SOURCE, "scenes", "box_tray.json")
+        found = run(os.path.join(self.build(project, "last"), "last"), scene).split()
+        run(PROGRAM, "-qq", "simulate", scene, "-o", os.path.join(self.folder, "tray.sqlite"))
+        expected = run("sqlite3", os.path.join(self.folder, "tray.sqlite"), "select value from meta where key = 'stateHash'")
+        self.assertEqual(found, [expected.strip(), "32"])
+
     def test_simulation_needs_no_opengl(self):
         used = names(os.path.join(self.example, "pendulum"))
         self.assertTrue(any("simulate" in name for name in used))
@@ -106,6 +147,14 @@ class Library(unittest.TestCase):
             self.assertGreater(len(shown), 100)
             self.assertEqual([name for name in shown if not name.startswith(("_Z", "DW.ref", "cradle"))], [])
             self.assertEqual([name for name in shown if "5Eigen" in name], [])
+
+    def test_the_installed_python_package_is_whole(self):
+        if not os.path.isdir(os.path.join(BUILD, "python", "cradle")):
+            self.skipTest("the build has no Python package")
+        package = [os.path.dirname(folder) for folder, _, names in os.walk(self.prefix) if "py.typed" in names]
+        program = "import cradle; print(len(cradle.simulate(%r)))" % SCENE
+        said = run("/usr/bin/python3", "-B", "-c", program, env={**os.environ, "PYTHONPATH": package[0]})
+        self.assertEqual(said.strip(), "601")
 
     def test_a_fault_is_an_exception_with_the_words_of_the_program(self):
         scene = os.path.join(self.folder, "fault.json")

@@ -35,6 +35,8 @@ class Described(unittest.TestCase):
             for example in re.findall(r"^  (cradle .*)$", told.split("Example:")[1], re.M):
                 self.assertIn(example, page, command)
             self.assertIn(told.splitlines()[0], page)
+            for option, kind, default in re.findall(r"(--[a-z-]+) (TEXT|FLOAT|U?INT)(?:=(\S+))?", told):
+                self.assertIn("%s\\fR \\fI%s\\fR%s" % (option, kind.lower(), " (default %s)" % default if default else ""), page)
             self.assertIn("cradle-%s" % command, self.page("cradle.1").replace("\\-", "-"))
 
     def test_pages_are_without_faults(self):

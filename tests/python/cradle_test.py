@@ -1,4 +1,5 @@
 """The package `cradle` for Python. CRADLE_PROGRAM and CRADLE_SOURCE say where the program and the sources are."""
+import copy
 import csv
 import os
 import signal
@@ -68,16 +69,31 @@ def test_states_are_those_of_the_program(motion, table):
 
 
 def test_a_saved_trajectory_is_that_of_the_program(motion, table, tmp_path):
-    motion.save(str(tmp_path / "b.sqlite"))
+    motion.save(tmp_path / "b.sqlite")
     compared = subprocess.run([PROGRAM, "compare", table[0], str(tmp_path / "b.sqlite"), "--tolerance", "0"])
     assert compared.returncode == 0
-    again = cradle.Trajectory(str(tmp_path / "b.sqlite"))
+    again = cradle.Trajectory(tmp_path / "b.sqlite")
     assert (again.positions == motion.positions).all() and len(again.events) == len(motion.events)
-    assert again.meta["stateHash"]
+    told = lambda motion: {key: text for key, text in motion.meta.items() if key not in ("cpuSeconds", "evaluations")}
+    assert told(again) == told(motion) and "promised" in again.meta["promise"] and again.meta["stateHash"]
+
+
+def test_saving_costs_no_other_file(motion, tmp_path):
+    thesis, part = tmp_path / "thesis.txt", tmp_path / "a.sqlite.part"
+    thesis.write_text("my thesis")
+    part.write_text("unfinished")
+    for path in (thesis, tmp_path / "a.sqlite"):
+        with pytest.raises(cradle.Error) as fault:
+            motion.save(path)
+        assert fault.value.kind == "output"
+    assert thesis.read_text() == "my thesis" and part.read_text() == "unfinished"
+    with pytest.raises(TypeError):
+        motion.save("a\0b.sqlite")
 
 
 def test_arrays_are_views_of_one_copy(motion):
     first, second = motion.positions, motion.positions
+    assert numpy.shares_memory(motion.times, motion.times) and not motion.times.flags.writeable
     assert numpy.shares_memory(first, second) and not first.flags.owndata and not first.flags.writeable
     assert numpy.shares_memory(motion.energy["kinetic"], motion.energy)
     with pytest.raises(ValueError):
@@ -107,7 +123,7 @@ def test_threads_share_a_trajectory():
     for thread in threads:
         thread.join()
     assert len(found) == 20 and len(set(found)) == 1
-    films = [cradle.Film(motion, 64, 36) for _ in range(3)]
+    films = [cradle.Film(motion, (64, 36)) for _ in range(3)]
     thread = threading.Thread(target=lambda: [found.append(film.draw(3).sum()) for film in films] and films.clear())
     thread.start()
     thread.join()
@@ -181,7 +197,13 @@ def test_pictures_are_those_of_the_program(motion, table, tmp_path):
     assert (cradle.render(motion, last, (320, 180)) != expected).any()
     with pytest.raises(cradle.Error) as fault:
         cradle.render(motion, 0, (100000, 180))
-    assert fault.value.kind in ("usage", "limit")
+    assert fault.value.kind == "usage" and "16384" in str(fault.value)
+    for size in ((0, 5), (-1, 5), 64, (1, 2, 3), (64.0, 48.0)):
+        with pytest.raises((cradle.Error, TypeError), match="size"):
+            cradle.render(motion, 0, size)
+    assert cradle.render(motion, 0, numpy.array([64, 48])).shape == (48, 64, 3)
+    with pytest.raises(cradle.Error, match="^overlay: found"):
+        cradle.render(motion, 0, (64, 48), "foo")
 
 
 def test_other_threads_go_on_while_it_simulates_and_draws():
@@ -218,6 +240,42 @@ def test_ctrl_c_ends_a_simulation():
     assert process.wait(20) == 42
 
 
+# Islands share a frame that takes long: what ends one of them ends all.
+def test_progress_ends_all_islands_of_a_frame():
+    told = []
+
+    def end(time, duration):
+        told.append(time)
+        if time > 0:
+            raise LookupError("enough")
+    balls = [{**BALL, "name": "ball%d" % k, "position": [3 * k, 1, 0]} for k in range(4)]
+    springs = [{"bodyA": ball["name"], "anchorB": [3 * k, 3, 0], "stiffness": 200} for k, ball in enumerate(balls)]
+    begin = time.monotonic()
+    with pytest.raises(LookupError):
+        cradle.simulate(scene(100, method={"name": "rk4", "timeStep": 1e-6}, bodies=balls, springs=springs,
+                              output={"framesPerSecond": 0.01}), progress=end)
+    assert time.monotonic() - begin < 20 and told[0] == 0 and len(told) == 2
+
+
+def test_python_ends_while_threads_work():
+    for work in ("cradle.simulate(slow, progress=lambda time, duration: None)", "cradle.render(motion, 0, (640, 360))"):
+        program = ("import cradle, threading, time\n"
+                   "motion = cradle.simulate(%r)\n"
+                   "slow = %r\n"
+                   "def work():\n"
+                   "    while True: %s\n"
+                   "threading.Thread(target=work, daemon=True).start()\n"
+                   "time.sleep(0.5)\n" % (scene(), scene(1000, bodies=(BALL,), method={"name": "rk4", "timeStep": 1e-5}, springs=[
+                       {"bodyA": "ball", "anchorB": [0, 3, 0], "stiffness": 200}]), work))
+        assert subprocess.run([sys.executable, "-c", program], stderr=subprocess.DEVNULL, timeout=60).returncode == 0, work
+
+
+def test_copies_are_the_same(motion):
+    assert copy.copy(motion) is motion and copy.deepcopy(motion.events[0]).time == motion.events[0].time
+    with pytest.raises(AttributeError):
+        motion.position = 3
+
+
 def test_progress_is_told_and_may_end_it():
     told = []
     cradle.simulate(scene(), progress=lambda time, duration: told.append((time, duration)))
@@ -232,8 +290,9 @@ def test_progress_is_told_and_may_end_it():
 
 def test_warnings_are_those_of_python():
     overlapping = scene(bodies=(FLOOR, {**BALL, "position": [0, 0.05, 0]}))
-    with pytest.warns(UserWarning):
+    with pytest.warns(UserWarning) as warned:
         cradle.simulate(overlapping)
+    assert warned[0].filename == __file__
 
 
 def test_no_signal_handler_is_set():

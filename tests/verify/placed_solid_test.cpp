@@ -45,7 +45,7 @@ void expectFirstMeetings(const Form& form) {
         EXPECT_LT(range->most - range->least, 1e-6);
       }
       double nearest = INFINITY;  // m: of places on the way
-      for (double depth = 0; depth < (range ? range->least - 1e-6 : 9); depth += 0.01)
+      for (double depth = 0; depth < (range ? range->least - 1e-6 : 9); depth += 0.03)
         nearest = std::min(nearest, at(depth));
       EXPECT_GT(nearest, 0);
     }
