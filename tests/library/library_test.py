@@ -40,20 +40,15 @@ int main(int, char** argv) {
   }
 }
 """
-LAST_PROJECT = """
-cmake_minimum_required(VERSION 3.25)
-project(last LANGUAGES CXX)
-find_package(Cradle 0.1 REQUIRED)
-add_executable(last last.cpp)
-target_link_libraries(last PRIVATE Cradle::render)
-target_link_options(last PRIVATE -ffast-math)
-"""
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)
-project(window LANGUAGES CXX)
+project(others LANGUAGES CXX)
 find_package(Cradle 0.1 REQUIRED)
 add_executable(window %s window.cpp)
 target_link_libraries(window PRIVATE Cradle::render)
+add_executable(last last.cpp)
+target_link_libraries(last PRIVATE Cradle::render)
+target_link_options(last PRIVATE -ffast-math)
 """
 
 
@@ -76,11 +71,18 @@ class Library(unittest.TestCase):
         cls.prefix = os.path.join(cls.folder, "installed")
         run(CMAKE, "--install", BUILD, "--prefix", cls.prefix)
         cls.example = cls.build(os.path.join(SOURCE, "examples", "library"), "example")
+        project = os.path.join(cls.folder, "others_project")
+        os.mkdir(project)
+        pictures = os.path.join(SOURCE, "examples", "library", "pictures.cpp")
+        for name, text in (("CMakeLists.txt", PROJECT % pictures), ("window.cpp", WINDOW), ("last.cpp", LAST)):
+            with open(os.path.join(project, name), "w") as file:
+                file.write(text)
+        cls.others = cls.build(project, "others")
 
     @classmethod
     def build(cls, project, name):
         folder = os.path.join(cls.folder, name)
-        run(CMAKE, "-S", project, "-B", folder, "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + cls.prefix, "-DCMAKE_BUILD_TYPE=Debug")
+        run(CMAKE, "-S", project, "-B", folder, "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + cls.prefix, "-DCMAKE_BUILD_TYPE=")
         run(CMAKE, "--build", folder)
         return folder
 
@@ -116,22 +118,11 @@ class Library(unittest.TestCase):
         self.assertEqual(ours[4], theirs[4])
 
     def test_a_program_with_a_window_keeps_its_functions(self):
-        project = os.path.join(self.folder, "window_project")
-        os.mkdir(project)
-        with open(os.path.join(project, "CMakeLists.txt"), "w") as file:
-            file.write(PROJECT % os.path.join(SOURCE, "examples", "library", "pictures.cpp"))
-        with open(os.path.join(project, "window.cpp"), "w") as file:
-            file.write(WINDOW)
-        self.check_pictures(os.path.join(self.build(project, "window"), "window"))
+        self.check_pictures(os.path.join(self.others, "window"))
 
     def test_films_end_with_the_program_and_bits_are_ours(self):
-        project = os.path.join(self.folder, "last_project")
-        os.mkdir(project)
-        for name, text in (("CMakeLists.txt", LAST_PROJECT), ("last.cpp", LAST)):
-            with open(os.path.join(project, name), "w") as file:
-                file.write(text)
         scene = os.path.join(SOURCE, "scenes", "box_tray.json")
-        found = run(os.path.join(self.build(project, "last"), "last"), scene).split()
+        found = run(os.path.join(self.others, "last"), scene).split()
         run(PROGRAM, "-qq", "simulate", scene, "-o", os.path.join(self.folder, "tray.sqlite"))
         expected = run("sqlite3", os.path.join(self.folder, "tray.sqlite"), "select value from meta where key = 'stateHash'")
         self.assertEqual(found, [expected.strip(), "32"])

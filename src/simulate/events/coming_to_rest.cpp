@@ -61,54 +61,67 @@ void ComingToRest::letSleep(const std::vector<Contact>& touching) {
         for (const int other : island_.resting.wake(island_.time, static_cast<int>(body)))
           isAwake[groupOf(static_cast<std::size_t>(other))] = 1, woken = true;
   }
+  std::vector<std::vector<int>> members(bodies);
+  for (std::size_t body = 0; body < bodies; ++body) members[groupOf(body)].push_back(static_cast<int>(body));
+  std::vector<std::vector<std::size_t>> contacts(bodies);
+  for (std::size_t i = 0; i < touching.size(); ++i)
+    contacts[groupOf(static_cast<std::size_t>(touching[i].movingBody()))].push_back(i);
+  std::optional<FreeMotion> motion;  // until what it depends on changes: one for many groups takes long
+  const bool areTied = !island_.assembly.mechanism.constraints.empty();
   for (std::size_t group = 0; group < bodies; ++group) {
     if (!isAwake[group] || !isStill[group]) continue;
     const std::vector<JointMotor> motors = island_.assembly.mechanism.motors;
-    pushTowardsTargets(groups, static_cast<int>(group));
-    const auto supports = findEquilibrium(touching, groups, static_cast<int>(group));
-    if (!supports) {
-      island_.assembly.mechanism.motors = motors;
-      continue;
-    }
-    std::vector<int> members;
-    for (std::size_t body = 0; body < bodies; ++body)
-      if (groupOf(body) == group) members.push_back(static_cast<int>(body));
-    if (!members.empty()) island_.resting.bringToRest(members, island_.state, *supports);
+    const bool isPushed = pushTowardsTargets(groups, static_cast<int>(group));
+    if (isPushed || !motion) motion = freeMotion();
+    const Group still{static_cast<int>(group), members[group], contacts[group]};
+    const auto supports = findEquilibrium(touching, groups, still, *motion);
+    if (!supports) island_.assembly.mechanism.motors = motors;
+    if (supports && !members[group].empty()) island_.resting.bringToRest(members[group], island_.state, *supports);
+    if (isPushed || (supports && areTied)) motion.reset();
   }
 }
 
+ComingToRest::FreeMotion ComingToRest::freeMotion() const {
+  FreeMotion motion;
+  island_.equations.evaluateWithoutContacts(island_.time, island_.state, motion.derivative);
+  findBodyFrames(island_.assembly.mechanism.bodies, island_.state, motion.frames);
+  return motion;
+}
+
 /// Motors of a group that stands have all their force for another target than rest, whatever they did before.
-void ComingToRest::pushTowardsTargets(const DisjointSets& groups, int group) {
+bool ComingToRest::pushTowardsTargets(const DisjointSets& groups, int group) {
+  bool isAny = false;
   for (JointMotor& motor : island_.assembly.mechanism.motors) {
     const int a = motor.joint.anchorA.body, b = motor.joint.anchorB.body;
     if (!motor.hasTarget || motor.targetVelocity == 0 || groups.islandOf(a == kFixed ? b : a) != group) continue;
     motor.mode = JointMotor::Mode::pushes;
     motor.sign = motor.targetVelocity < 0 ? -1 : 1;
+    isAny = true;
   }
+  return isAny;
 }
 
 /// The contact forces within the friction cones that balance all that acts on a group, with those of constraints: none
-/// where these do so alone. Null if nothing does.
+/// where these do so alone. Null if nothing does. Adds what contacts do to the group's part of `motion`.
 std::optional<std::vector<SupportForce>> ComingToRest::findEquilibrium(const std::vector<Contact>& touching,
-                                                                       const DisjointSets& groups, int group) {
+                                                                       const DisjointSets& groups, const Group& group,
+                                                                       FreeMotion& motion) {
   const Mechanism& mechanism = island_.assembly.mechanism;
-  VectorX derivative;
-  island_.equations.evaluateWithoutContacts(island_.time, island_.state, derivative);
-  std::vector<BodyFrame> frames;
-  findBodyFrames(mechanism.bodies, island_.state, frames);
+  auto& [derivative, frames] = motion;
   std::vector<ContactRows> contacts;
   std::vector<SupportForce> supports;
-  if (isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(0))) {
-    if (!doLimitsHold(contacts, VectorX(), frames, groups, group)) return std::nullopt;
+  if (isInEquilibrium(derivative, group, tolerances_.maxRestAcceleration(0))) {
+    if (!doLimitsHold(contacts, VectorX(), frames, groups, group.number)) return std::nullopt;
     return supports;
   }
   std::vector<double> frictions;
   const auto leaves = [&](int body) {  // what is driven carries nothing that it does not go with
     return body != kFixed && mechanism.bodies[static_cast<std::size_t>(body)].isDriven() &&
-           groups.islandOf(body) != group;
+           groups.islandOf(body) != group.number;
   };
-  for (const Contact& contact : touching) {
-    if (groups.islandOf(contact.movingBody()) != group || leaves(contact.bodyB)) continue;
+  for (const std::size_t index : group.contacts) {
+    const Contact& contact = touching[index];
+    if (leaves(contact.bodyB)) continue;
     contacts.push_back(rowsOf(contact, island_.state, frames));
     supports.push_back({contact, island_.assembly.geometry.pairs[contact.pair], Vec3::Zero()});
     frictions.push_back(supports.back().pair.material.staticFriction);
@@ -118,8 +131,8 @@ std::optional<std::vector<SupportForce>> ComingToRest::findEquilibrium(const std
   const ContactSolution solution =
       solveFrictionalContact(delassus.matrix(), delassus.accelerations(derivative), frictions);
   delassus.apply(solution.impulses, derivative);
-  if (!isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(solution.residual)) ||
-      !doLimitsHold(contacts, solution.impulses, frames, groups, group))
+  if (!isInEquilibrium(derivative, group, tolerances_.maxRestAcceleration(solution.residual)) ||
+      !doLimitsHold(contacts, solution.impulses, frames, groups, group.number))
     return std::nullopt;
   for (std::size_t i = 0; i < supports.size(); ++i) {
     const ConstraintBlock& block = contacts[i].block;
@@ -160,14 +173,11 @@ bool ComingToRest::doLimitsHold(const std::vector<ContactRows>& contacts, const 
 }
 
 /// Whether the accelerations of a state derivative are below `most` (m/s^2) for all bodies of a group.
-bool ComingToRest::isInEquilibrium(const VectorX& derivative, const DisjointSets& groups, int group,
-                                   double most) const {
-  const Mechanism& mechanism = island_.assembly.mechanism;
-  for (std::size_t body = 0; body < mechanism.bodies.size(); ++body) {
-    if (groups.islandOf(static_cast<int>(body)) != group) continue;
-    const Eigen::Index index = static_cast<Eigen::Index>(body);
-    const double left =
-        std::max(linearVelocity(derivative, index).norm(), sizeOf(body) * angularVelocity(derivative, index).norm());
+bool ComingToRest::isInEquilibrium(const VectorX& derivative, const Group& group, double most) const {
+  for (const int body : group.bodies) {
+    const Eigen::Index index = body;
+    const double left = std::max(linearVelocity(derivative, index).norm(),
+                                 sizeOf(static_cast<std::size_t>(body)) * angularVelocity(derivative, index).norm());
     if (left > most) return false;
   }
   return true;

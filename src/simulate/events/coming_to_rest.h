@@ -34,12 +34,24 @@ class ComingToRest {
   double sizeOf(std::size_t body) const;  // m: its radius, or that of gyration if it does not collide
   bool isSlow(std::size_t body) const;
   DisjointSets findRestGroups(const std::vector<Contact>& touching) const;
-  void pushTowardsTargets(const DisjointSets& groups, int group);
+  struct Group {
+    int number;
+    const std::vector<int>& bodies;
+    const std::vector<std::size_t>& contacts;  // of those that touch
+  };
+  /// What bodies do without contacts, in the state and with the motors that the island has now.
+  struct FreeMotion {
+    VectorX derivative;
+    std::vector<BodyFrame> frames;
+  };
+  FreeMotion freeMotion() const;
+  bool pushTowardsTargets(const DisjointSets& groups, int group);
   std::optional<std::vector<SupportForce>> findEquilibrium(const std::vector<Contact>& touching,
-                                                           const DisjointSets& groups, int group);
+                                                           const DisjointSets& groups, const Group& group,
+                                                           FreeMotion& motion);
   bool doLimitsHold(const std::vector<ContactRows>& contacts, const VectorX& impulses,
                     const std::vector<BodyFrame>& frames, const DisjointSets& groups, int group);
-  bool isInEquilibrium(const VectorX& derivative, const DisjointSets& groups, int group, double most) const;
+  bool isInEquilibrium(const VectorX& derivative, const Group& group, double most) const;
 
   IslandState& island_;
   const LimitEvents& limits_;
