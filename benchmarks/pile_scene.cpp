@@ -15,6 +15,41 @@ constexpr double kPi = 3.14159265358979324;
 constexpr double kMinAxis = 1e-6;  // of a unit: edges that are parallel have no axis of their own
 constexpr int kSearchSteps = 60;   // of a golden section: 0.618^60 = 3e-13
 
+/// The hull of points about their centre of mass.
+std::shared_ptr<const PileHull> pileHullOf(const std::vector<Vec3>& points) {
+  auto made = std::make_shared<PileHull>();
+  made->hull = convexHullOf(points);
+  const Vec3 center = computeMassProperties(trianglesOf(made->hull), kDensity).centerOfMass;
+  std::vector<Vec3>& corners = made->hull.vertices;
+  for (Vec3& corner : corners) corner -= center;
+  made->massProperties = computeMassProperties(trianglesOf(made->hull), kDensity);
+  for (const std::vector<std::size_t>& loop : made->hull.faces) {
+    made->faceNormals.push_back(
+        (corners[loop[1]] - corners[loop[0]]).cross(corners[loop[2]] - corners[loop[0]]).normalized());
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::size_t from = loop[i], to = loop[(i + 1) % loop.size()];
+      if (from < to) made->edges.push_back((corners[to] - corners[from]).normalized());
+    }
+  }
+  return made;
+}
+
+/// Points spread over an ellipsoid, which are all corners of their hull.
+std::vector<Vec3> pointsOnEllipsoid(std::mt19937& random) {
+  const auto between = [&](double least, double most) {
+    return least + (most - least) * static_cast<double>(random()) / 4294967295.0;
+  };
+  const double x = between(0.07, 0.13), y = between(0.07, 0.13), z = between(0.07, 0.13);
+  std::vector<Vec3> points(12 + random() % 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double height = (2 * (static_cast<double>(i) + 0.5) / static_cast<double>(points.size())) - 1;
+    const double angle = kPi * (3 - std::sqrt(5.0)) * static_cast<double>(i) + between(-0.3, 0.3);
+    const double around = std::sqrt(1 - height * height);
+    points[i] = Vec3(x * around * std::cos(angle), y * height, z * around * std::sin(angle));
+  }
+  return points;
+}
+
 PileItem itemOf(const std::string& kind, std::mt19937& random) {
   const auto between = [&](double least, double most) {
     return least + (most - least) * static_cast<double>(random()) / 4294967295.0;
@@ -23,6 +58,11 @@ PileItem itemOf(const std::string& kind, std::mt19937& random) {
   if (kind == "spheres") item.radius = kHalf;
   if (kind == "boxes" || kind == "turned") item.halfSize = Vec3::Constant(kHalf);
   if (kind == "bars") item.halfSize = Vec3(0.04, 0.3, 0.05);
+  if (kind == "hulls") {
+    item.hull = pileHullOf(pointsOnEllipsoid(random));
+    item.mass = item.hull->massProperties.mass;
+    for (const Vec3& corner : item.hull->hull.vertices) item.halfSize = item.halfSize.cwiseMax(corner.cwiseAbs());
+  }
   if (kind == "capsules") item.radius = 0.06, item.halfSize = Vec3(0, between(0.05, 0.2), 0);
   if (kind == "mixed") {
     const bool isSphere = random() % 2 == 0;
@@ -89,7 +129,36 @@ double depthOfRound(const PileItem& round, const PileItem& other, const Vec3& of
   return round.radius - (round.halfSize.isZero() ? fromA(0) : leastOf(fromA));
 }
 
-double depthOf(const PileItem& first, const PileItem& second, const Vec3& offset, const Mat3& a, const Mat3& b) {
+/// Depth of two hulls in each other, by the normals of all faces and the directions across all pairs of edges; without
+/// these if the faces alone show that it is at most `enough` (m).
+double depthOfHulls(const PileHull& first, const PileHull& second, const Vec3& offset, const Mat3& a, const Mat3& b,
+                    double enough) {
+  double least = 1e9;
+  const auto reach = [](const PileHull& hull, const Vec3& direction) {
+    double most = -1e9;
+    for (const Vec3& corner : hull.hull.vertices) most = std::max(most, direction.dot(corner));
+    return most;
+  };
+  const auto consider = [&](const Vec3& axis) {  // unit, from the first to the second
+    const double apart = axis.dot(offset);
+    least = std::min(least, reach(first, a.transpose() * axis) + reach(second, b.transpose() * -axis) - apart);
+  };
+  for (const Vec3& normal : first.faceNormals) consider(a * normal);
+  for (const Vec3& normal : second.faceNormals) consider(-(b * normal));
+  for (const Vec3& edgeA : first.edges) {
+    if (least <= enough) return least;
+    for (const Vec3& edgeB : second.edges) {
+      const Vec3 axis = (a * edgeA).cross(b * edgeB);
+      if (axis.norm() < kMinAxis) continue;
+      consider(axis.normalized()), consider(-axis.normalized());
+    }
+  }
+  return least;
+}
+
+double depthOf(const PileItem& first, const PileItem& second, const Vec3& offset, const Mat3& a, const Mat3& b,
+               double enough) {
+  if (first.hull) return depthOfHulls(*first.hull, *second.hull, offset, a, b, enough);
   if (!first.isBox()) return depthOfRound(first, second, offset, a, b);
   if (!second.isBox()) return depthOfRound(second, first, -offset, b, a);
   return depthOfBoxes(first, second, offset, a, b);
@@ -98,7 +167,7 @@ double depthOf(const PileItem& first, const PileItem& second, const Vec3& offset
 }  // namespace
 
 const std::vector<std::string>& pileKinds() {
-  static const std::vector<std::string> kinds{"spheres", "boxes", "turned", "bars", "mixed", "capsules"};
+  static const std::vector<std::string> kinds{"spheres", "boxes", "turned", "bars", "mixed", "capsules", "hulls"};
   return kinds;
 }
 
@@ -141,7 +210,12 @@ double deepestOverlap(const PileScene& scene, const PilePoses& poses) {
     const PileItem& item = scene.items[i];
     farthest = std::max(farthest, item.reach());
     for (const PlaneCollider& plane : scene.planes) {
-      const double reach = item.radius + (poses.turns[i].transpose() * plane.normal).cwiseAbs().dot(item.halfSize);
+      const Vec3 down = poses.turns[i].transpose() * -plane.normal;
+      double reach = item.radius + down.cwiseAbs().dot(item.halfSize);
+      if (item.hull) {
+        reach = 0;
+        for (const Vec3& corner : item.hull->hull.vertices) reach = std::max(reach, down.dot(corner));
+      }
       most = std::max(most, reach - plane.normal.dot(poses.positions[i] - plane.point));
     }
   }
@@ -152,7 +226,7 @@ double deepestOverlap(const PileScene& scene, const PilePoses& poses) {
       const double reach = scene.items[a].reach() + scene.items[b].reach();
       if (offset.x() > scene.items[a].reach() + farthest) break;
       if (offset.squaredNorm() > reach * reach) continue;
-      most = std::max(most, depthOf(scene.items[a], scene.items[b], offset, poses.turns[a], poses.turns[b]));
+      most = std::max(most, depthOf(scene.items[a], scene.items[b], offset, poses.turns[a], poses.turns[b], most));
     }
   return most;
 }

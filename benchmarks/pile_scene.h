@@ -1,21 +1,33 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "collision/collider.h"
 #include "math/types.h"
+#include "mesh/convex_hull.h"
+#include "mesh/mass_properties.h"
 
 namespace cradle {
 
-/// A body of a heap: a box, or all points within `radius` of the segment from -halfSize to halfSize along y.
+/// A convex solid about its centre of mass.
+struct PileHull {
+  ConvexHull hull;                // m
+  std::vector<Vec3> faceNormals;  // unit, outwards
+  std::vector<Vec3> edges;        // unit, each once
+  MassProperties massProperties;
+};
+
+/// A body of a heap: a hull, a box, or all points within `radius` of the segment from -halfSize to halfSize along y.
 struct PileItem {
-  double radius = 0;             // m; 0: a box
-  Vec3 halfSize = Vec3::Zero();  // m; of a ball zero, of a capsule its half length in y
+  std::shared_ptr<const PileHull> hull = {};
+  double radius = 0;             // m; 0: a hull or a box
+  Vec3 halfSize = Vec3::Zero();  // m; of a ball zero, of a capsule its half length in y, of a hull half of its bounds
   double mass = 1;               // kg
   Vec3 position = Vec3::Zero();  // m, of the centre
   Quat turn = Quat::Identity();  // worldFromBody
-  bool isBox() const { return radius == 0; }
+  bool isBox() const { return radius == 0 && !hull; }
   double reach() const { return radius + halfSize.norm(); }  // m, from the centre
 };
 
@@ -27,7 +39,7 @@ struct PileScene {
 };
 
 /// The kinds of heaps that there are: "spheres", "boxes", "turned" (boxes), all of 0.2 m and 1 kg; and of 1000 kg/m^3
-/// and turned "bars", "mixed" (balls and boxes of many sizes) and "capsules".
+/// and turned "bars", "mixed" (balls and boxes of many sizes), "capsules" and "hulls" of 12 to 14 corners.
 const std::vector<std::string>& pileKinds();
 
 /// `start` makes their places and turns others. Throws std::invalid_argument for another kind.

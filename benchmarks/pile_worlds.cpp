@@ -16,13 +16,29 @@ auto withShapeOf(const PileItem& item, const Work& work) {
 }
 
 MassProperties massPropertiesOf(const PileItem& item) {
+  if (item.hull) return item.hull->massProperties;
   return withShapeOf(item, [&](const auto& shape) {
     const double mass = massProperties(shape, 1).mass;
     return massProperties(shape, item.mass / mass);
   });
 }
 
+Collider colliderOf(const PileItem& item) {
+  if (item.hull) return colliderOf(item.hull->hull, RigidTransform{});
+  return withShapeOf(item, [](const auto& shape) { return cradle::colliderOf(shape, RigidTransform{}); });
+}
+
+/// Around hulls Bullet lays 40 mm of air if it is not told to lay less.
+std::unique_ptr<btCollisionShape> bulletHullOf(const PileHull& hull) {
+  constexpr double kMargin = 1e-3;  // m
+  auto shape = std::make_unique<btConvexHullShape>();
+  for (const Vec3& corner : hull.hull.vertices) shape->addPoint(btVector3(corner.x(), corner.y(), corner.z()));
+  shape->setMargin(kMargin);
+  return shape;
+}
+
 std::unique_ptr<btCollisionShape> bulletShapeOf(const PileItem& item) {
+  if (item.hull) return bulletHullOf(*item.hull);
   const Vec3& half = item.halfSize;
   if (item.isBox()) return std::make_unique<btBoxShape>(btVector3(half.x(), half.y(), half.z()));
   if (half.isZero()) return std::make_unique<btSphereShape>(item.radius);
@@ -34,7 +50,7 @@ std::unique_ptr<btCollisionShape> bulletShapeOf(const PileItem& item) {
 OurPile::OurPile(const PileScene& scene, int threads) {
   for (const PileItem& item : scene.items) {
     bodies_.push_back(makeRigidBody(massPropertiesOf(item)));
-    Collider collider = withShapeOf(item, [](const auto& shape) { return colliderOf(shape, RigidTransform{}); });
+    Collider collider = colliderOf(item);
     collider.body = static_cast<int>(geometry_.colliders.size());
     geometry_.colliders.push_back(collider);
   }
@@ -64,7 +80,7 @@ BulletPile::BulletPile(const PileScene& scene) {
     add(item.mass, shapes_.back().get(), item.position, item.turn);
   }
   const bool hasBoxes =
-      std::any_of(scene.items.begin(), scene.items.end(), [](const PileItem& item) { return item.isBox(); });
+      std::any_of(scene.items.begin(), scene.items.end(), [](const PileItem& item) { return item.radius == 0; });
   for (const PlaneCollider& plane : scene.planes) addWall(plane, hasBoxes);
 }
 

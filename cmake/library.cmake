@@ -22,7 +22,7 @@ function(cradle_archive NAME)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 endfunction()
 
-cradle_archive(simulate SOURCES library/scene.cpp library/trajectory.cpp library/simulate.cpp
+cradle_archive(simulate SOURCES library/scene.cpp library/trajectory.cpp library/simulate.cpp library/watch.cpp
   LAYERS core math mesh scene dynamics constraints collision impact trajectory simulate)
 target_link_libraries(library_simulate PRIVATE fmt::fmt assimp::assimp Qhull::qhull_r SQLite::SQLite3 seccomp Threads::Threads)
 

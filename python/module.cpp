@@ -2,6 +2,7 @@
 
 #include <cradle/render.h>
 #include <cradle/simulate.h>
+#include <cradle/watch.h>
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -180,9 +181,9 @@ py::array copyOf(const Vector3& vector) {
   return readOnly(py::array_t<double>(3, vector.data()));
 }
 
-/// Lets Python look for Ctrl-C now and then.
+/// Lets Python look for Ctrl-C now and then while this thread loads or simulates.
 class SignalWatch {
- public:
+ private:
   void look() {
     constexpr std::chrono::milliseconds kInterval(50);
     Busy::requireTime();
@@ -195,6 +196,7 @@ class SignalWatch {
 
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  const Watch watch_{[this] { look(); }};
 };
 
 void warn(const std::string& warning) {
@@ -208,9 +210,8 @@ Motion simulateScene(const Scene& scene, const std::function<void(double, double
   for (const std::string& warning : scene.warnings()) warn(warning);
   const Busy busy;
   const py::gil_scoped_release released;
-  SignalWatch signals;
+  const SignalWatch signals;
   const auto tell = [&](double time) {
-    signals.look();
     if (!progress) return;
     const py::gil_scoped_acquire acquired;
     progress(time, scene.duration());
@@ -317,8 +318,9 @@ void addScene(py::module_& module) {
       .def("__deepcopy__", sameOfDeep, "memo"_a)
       .def_static(
           "load", [](const std::filesystem::path& path) { return Scene::load(path.string()); }, "path"_a,
-          py::call_guard<py::gil_scoped_release>())
-      .def_static("parse", &Scene::parse, "text"_a, "path"_a = "scene.json", py::call_guard<py::gil_scoped_release>())
+          py::call_guard<py::gil_scoped_release, SignalWatch>())
+      .def_static("parse", &Scene::parse, "text"_a, "path"_a = "scene.json",
+                  py::call_guard<py::gil_scoped_release, SignalWatch>())
       .def_property_readonly("name", &Scene::name)
       .def_property_readonly("text", &Scene::text)
       .def_property_readonly("duration", &Scene::duration, "s")

@@ -92,8 +92,8 @@ def load(scene):
 def simulate(scene, progress=None):
     """Simulates a scene (a Scene, a path or a dict), and returns its Trajectory.
 
-    `progress(time, duration)` is called after each frame, and once a second inside one that takes longer; in s. Other threads of Python run meanwhile. Warnings are
-    raised as UserWarning; errors as Error; Ctrl-C ends it.
+    `progress(time, duration)` is called after each frame, and once a second inside one that takes longer; in s. Other
+    threads of Python run meanwhile. Warnings are raised as UserWarning; errors as Error; Ctrl-C ends it.
     """
     return Trajectory(_cradle.simulate(load(scene), progress))
 

@@ -23,6 +23,7 @@ class Core {
 
   const Collider& collider() const { return collider_; }
   Vec3 placed(const Vec3& point) const { return turn_ * point + shift_; }
+  Vec3 placedBack(const Vec3& point) const { return turn_.transpose() * (point - shift_); }
   Vec3 turned(const Vec3& direction) const { return turn_ * direction; }
   Vec3 turnedBack(const Vec3& direction) const { return turn_.transpose() * direction; }
 

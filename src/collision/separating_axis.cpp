@@ -20,14 +20,20 @@ namespace {
 /// The search for the best axes of each kind; directions are followed in B's frame.
 class AxisSearch {
  public:
-  /// `a` has faces.
-  AxisSearch(const Core& a, const Core& b)
-      : coreA_(a), coreB_(b), a_(*a.collider().polytope), b_(*b.collider().polytope), heights_(&pool_) {}
+  /// `a` has faces. `near` leads from A to B, where they are next to each other; axes that see no more than `known` (m)
+  /// need not be found.
+  AxisSearch(const Core& a, const Core& b, const Vec3& near, double known)
+      : coreA_(a),
+        coreB_(b),
+        a_(*a.collider().polytope),
+        b_(*b.collider().polytope),
+        near_(near),
+        heights_(&pool_),
+        best_(known) {}
 
   SeparatingAxes find() {
-    const Vec3 towards = coreB_.placed(b_.vertices[0]) - coreA_.placed(a_.vertices[0]);
-    tryFacesOfA(coreB_.supportPoint(-towards));
-    tryFacesOfB(coreA_.supportPoint(towards));
+    tryFacesOfA(coreB_.supportPoint(-near_));
+    tryFacesOfB(coreA_.supportPoint(near_));
     for (const Polytope::Edge& edge : a_.edges) {
       // A point of B below both faces of the edge is at least as deep for all normals on the arc between them.
       const double seen = std::max(heights_[edge.left], heights_[edge.right]);
@@ -41,21 +47,24 @@ class AxisSearch {
   /// by that of `onB` (m), a point of B near A.
   void tryFacesOfA(const Vec3& onB) {
     heights_.reserve(a_.faces.size());
+    const Vec3 inA = coreA_.placedBack(onB);
     std::size_t vertex = 0;
     for (const Polytope::Face& face : a_.faces) {
-      const Vec3 normal = coreA_.turned(face.normal), onFace = coreA_.placed(face.offset * face.normal);
-      heights_.push_back(normal.dot(onB - onFace));
+      heights_.push_back(face.normal.dot(inA) - face.offset);
       if (heights_.back() <= best_) continue;
+      const Vec3 normal = coreA_.turned(face.normal), onFace = coreA_.placed(face.offset * face.normal);
       vertex = supportVertex(b_, coreB_.turnedBack(-normal), vertex);
       keep(axes_.faceOfA, normal.dot(coreB_.placed(b_.vertices[vertex]) - onFace), normal);
     }
   }
 
   void tryFacesOfB(const Vec3& onA) {
+    const Vec3 inB = coreB_.placedBack(onA);
     std::size_t vertex = 0;
     for (const Polytope::Face& face : b_.faces) {
+      // Faces that see as much as one of A are kept too.
+      if (face.normal.dot(inB) - face.offset < best_ - equalGaps_) continue;
       const Vec3 normal = coreB_.turned(face.normal), onFace = coreB_.placed(face.offset * face.normal);
-      if (normal.dot(onA - onFace) < best_ - equalGaps_) continue;  // faces that see as much as one of A are kept too
       vertex = supportVertex(a_, coreA_.turnedBack(-normal), vertex);
       keep(axes_.faceOfB, normal.dot(coreA_.placed(a_.vertices[vertex]) - onFace), -normal);
     }
@@ -102,23 +111,37 @@ class AxisSearch {
 
   const Core &coreA_, &coreB_;
   const Polytope &a_, &b_;
+  const Vec3 near_;
   SeparatingAxes axes_;
   std::array<std::byte, 2048> memory_;  // enough for 256 faces: no allocation
   std::pmr::monotonic_buffer_resource pool_{memory_.data(), memory_.size()};
   std::pmr::vector<double> heights_;                               // m: of a point of B over each face of A
-  double best_ = -std::numeric_limits<double>::infinity();         // m: largest gap found
+  double best_;                                                    // m: largest gap known
   double equalGaps_ = ConvexTolerances(coreA_, coreB_).equalGaps;  // m
   std::size_t lastStart_ = 0;                                      // vertex of B where the last arc began
 };
 
 }  // namespace
 
-SeparatingAxes separatingAxes(const Core& a, const Core& b) {
-  if (!a.collider().polytope->faces.empty()) return AxisSearch(a, b).find();
-  SeparatingAxes axes = AxisSearch(b, a).find();
+namespace {
+
+SeparatingAxes axesFrom(const Core& a, const Core& b, const Vec3& near, double known) {
+  if (!a.collider().polytope->faces.empty()) return AxisSearch(a, b, near, known).find();
+  SeparatingAxes axes = AxisSearch(b, a, -near, known).find();
   std::swap(axes.faceOfA, axes.faceOfB);
   for (SeparatingAxis* axis : {&axes.faceOfA, &axes.faceOfB, &axes.edges}) axis->normal = -axis->normal;
   return axes;
+}
+
+}  // namespace
+
+SeparatingAxes separatingAxes(const Core& a, const Core& b) {
+  const Vec3 towards = b.placed(b.collider().polytope->vertices[0]) - a.placed(a.collider().polytope->vertices[0]);
+  return axesFrom(a, b, towards, -std::numeric_limits<double>::infinity());
+}
+
+SeparatingAxes separatingAxes(const Core& a, const Core& b, const SeparatingAxis& known, double preference) {
+  return axesFrom(a, b, known.normal, known.separation - preference);
 }
 
 }  // namespace cradle

@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <string_view>
+#include <utility>
 
 #include "core/crash.h"
 #include "core/error.h"
@@ -16,6 +17,12 @@ constexpr int kExitOfSignal = 128;  // and its number, as shells have it
 
 // The only global: a signal handler has no other place to write to.
 volatile std::sig_atomic_t notedSignal = 0;
+
+struct WatchOfThread {
+  InterruptionWatch* watch = nullptr;
+  bool isHelper = false;
+};
+thread_local WatchOfThread watchOfThread;
 
 const char* wordOfNotedSignal() {
   if (notedSignal == SIGHUP) return "hung up";
@@ -52,9 +59,42 @@ int interruptingSignal() {
 }
 
 void throwIfInterrupted() {
+  if (watchOfThread.watch != nullptr) watchOfThread.watch->look();
   if (notedSignal == 0) return;
   alarm(0);  // noticed: to put files in order may take its time
   throw Error(ErrorKind::interrupted, "", wordOfNotedSignal());
+}
+
+InterruptionWatch::InterruptionWatch(std::function<void()> look) : look_(std::move(look)), outer_(watchOfThread.watch) {
+  watchOfThread.watch = this;
+}
+
+InterruptionWatch::~InterruptionWatch() {
+  watchOfThread.watch = outer_;
+}
+
+InterruptionWatch* InterruptionWatch::ofThread() {
+  return watchOfThread.watch;
+}
+
+void InterruptionWatch::look() {
+  if (hasThrown_) std::rethrow_exception(thrown_);
+  if (watchOfThread.isHelper) return;
+  try {
+    look_();
+  } catch (...) {
+    thrown_ = std::current_exception();
+    hasThrown_ = true;
+    throw;
+  }
+}
+
+InterruptionWatch::OfHelper::OfHelper(InterruptionWatch* watch) {
+  watchOfThread = {watch, true};
+}
+
+InterruptionWatch::OfHelper::~OfHelper() {
+  watchOfThread = {};
 }
 
 }  // namespace cradle

@@ -48,6 +48,7 @@ void WorkerThreads::run(const std::function<void(int)>& task) {
   {
     const std::lock_guard lock(mutex_);
     task_ = &task;
+    watch_ = InterruptionWatch::ofThread();
     started_.fetch_add(1, std::memory_order_release);
   }
   wake_.notify_all();
@@ -98,7 +99,10 @@ void WorkerThreads::work(int thread) {
       if (isClosing_) return;
     }
     const double before = cpuSecondsOfThread();
-    doTask(thread);
+    {
+      const InterruptionWatch::OfHelper watched(watch_);
+      doTask(thread);
+    }
     helperSeconds_.fetch_add(cpuSecondsOfThread() - before);
     ended_.fetch_add(1, std::memory_order_acq_rel);
     ended_.notify_all();

@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/interruption.h"
+
 namespace cradle {
 
 /// Threads that do one task together and wait for each other inside it. The caller's is the first of them; the others
@@ -62,8 +64,9 @@ class WorkerThreads {
   std::mutex mutex_;
   std::condition_variable wake_;
   const std::function<void(int)>* task_ = nullptr;
-  std::atomic<long> started_ = 0;      // tasks so far
-  std::atomic<std::size_t> next_ = 0;  // of the things shared that nobody has taken
+  InterruptionWatch* watch_ = nullptr;  // of the thread that gave the task
+  std::atomic<long> started_ = 0;       // tasks so far
+  std::atomic<std::size_t> next_ = 0;   // of the things shared that nobody has taken
   std::atomic<bool> isClosing_ = false;
   std::atomic<int> waiting_ = 0;
   std::atomic<long> meetings_ = 0;

@@ -14,10 +14,11 @@ SoftManifolds::SoftManifolds(const ContactGeometry& geometry, double scale) : ge
   for (const Collider& collider : geometry.colliders) {
     boxes_.push_back(boxOf(collider));
     const bool isBox = boxes_.back().has_value(), isCapsule = collider.kind() == ColliderKind::capsule;
-    shapes_.push_back(isBox                 ? Shape::box
-                      : collider.isSphere() ? Shape::sphere
-                      : isCapsule           ? Shape::capsule
-                                            : Shape::any);
+    shapes_.push_back(isBox                                       ? Shape::box
+                      : collider.isSphere()                       ? Shape::sphere
+                      : isCapsule                                 ? Shape::capsule
+                      : collider.kind() == ColliderKind::polytope ? Shape::hull
+                                                                  : Shape::any);
   }
 }
 
@@ -56,13 +57,32 @@ SoftPair SoftManifolds::pairOf(std::size_t index) const {
 
 bool SoftManifolds::isFast(const SoftPair& pair) const {
   const Shape a = shapes_[pair.shapeA], b = pair.againstPlane ? Shape::sphere : shapes_[pair.shapeB];
-  if (a == Shape::any || b == Shape::any) return false;
+  if (a >= Shape::hull || b >= Shape::hull) return false;
   return !(a == Shape::capsule && b == Shape::box) && !(a == Shape::box && b == Shape::capsule);
 }
 
-PredictedManifold SoftManifolds::manifoldOf(const SoftPair& pair, const SoftStepStart& look,
+/// Boxes are hulls, too.
+bool SoftManifolds::areHulls(const SoftPair& pair) const {
+  const auto isHull = [this](std::uint32_t shape) {
+    return shapes_[shape] == Shape::hull || shapes_[shape] == Shape::box;
+  };
+  return isHull(pair.shapeA) && (pair.againstPlane || isHull(pair.shapeB));
+}
+
+PredictedManifold SoftManifolds::manifoldOf(SoftPair& pair, const SoftStepStart& look,
                                             std::vector<Contact>& scratch) const {
+  if (!isFast(pair) && areHulls(pair)) return manifoldOfHulls(pair, look);
   return isFast(pair) ? manifoldOfFastShapes(pair, look) : manifoldOfAnyShapes(pair, look, scratch);
+}
+
+PredictedManifold SoftManifolds::manifoldOfHulls(SoftPair& pair, const SoftStepStart& look) const {
+  const MovingPose &poseA = look.poseOf(pair.bodyA), &poseB = look.poseOf(pair.bodyB);
+  const Vec3 motion = look.timeStep * (poseB.linearVelocity - poseA.linearVelocity);
+  const double margin = look.margin + look.timeStep * (poseA.spinSpeed + poseB.spinSpeed);
+  const Core a(geometry_.colliders[pair.shapeA], poseOf(look.state, pair.bodyA));
+  if (pair.againstPlane) return contactOfHullAndPlane(a, geometry_.planes[pair.shapeB], motion, margin, scale_);
+  const Core b(geometry_.colliders[pair.shapeB], poseOf(look.state, pair.bodyB));
+  return contactOfHulls(a, b, motion, margin, scale_, pair.axis);
 }
 
 PredictedManifold SoftManifolds::manifoldOfFastShapes(const SoftPair& pair, const SoftStepStart& look) const {

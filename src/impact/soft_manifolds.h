@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "collision/predicted_manifold.h"
+#include "collision/hull_manifold.h"
 #include "collision/separation.h"
 
 namespace cradle {
@@ -45,10 +45,11 @@ struct SoftPair {
   std::uint32_t shapeB = 0;  // collider or plane
   int bodyA = kFixed, bodyB = kFixed;
   bool againstPlane = false, isExchanged = false;
+  HullAxis axis = Vec3::Zero();  // of two hulls: for the next look
 };
 
-/// The contact manifolds of a heap's pairs: boxes, spheres and capsules fast, but a capsule with a box and other
-/// shapes through the general search.
+/// The contact manifolds of a heap's pairs: boxes, hulls, spheres and capsules fast, but a sphere or capsule with a
+/// hull, a capsule with a box and other shapes through the general search.
 class SoftManifolds {
  public:
   /// Keeps a reference to `geometry`. `scale`: of lengths, as collision/predicted_manifold.h has it.
@@ -57,10 +58,10 @@ class SoftManifolds {
   SoftPair pairOf(std::size_t index) const;
 
   /// Its contact in the step to come.
-  PredictedManifold manifoldOf(const SoftPair& pair, const SoftStepStart& look, std::vector<Contact>& scratch) const;
+  PredictedManifold manifoldOf(SoftPair& pair, const SoftStepStart& look, std::vector<Contact>& scratch) const;
 
  private:
-  enum class Shape : char { sphere, capsule, box, any };
+  enum class Shape : char { sphere, capsule, box, hull, any };
   struct BoxShape {
     Vec3 center;  // m, from the centre of mass, body's frame; world if fixed
     Mat3 axes;
@@ -69,6 +70,8 @@ class SoftManifolds {
 
   static std::optional<BoxShape> boxOf(const Collider& collider);
   bool isFast(const SoftPair& pair) const;
+  bool areHulls(const SoftPair& pair) const;
+  PredictedManifold manifoldOfHulls(SoftPair& pair, const SoftStepStart& look) const;
   PredictedManifold manifoldOfFastShapes(const SoftPair& pair, const SoftStepStart& look) const;
   PredictedManifold manifoldOfAnyShapes(const SoftPair& pair, const SoftStepStart& look,
                                         std::vector<Contact>& scratch) const;

@@ -14,15 +14,15 @@ namespace {
 
 SimulationSink sinkOf(const Callbacks& callbacks) {
   SimulationSink sink{[&callbacks](const cradle::Frame& frame) {
-                        if (callbacks.frame) callbacks.frame(frameOf(frame));
+                        if (callbacks.frame) asThrownByCaller(callbacks.frame, frameOf(frame));
                       },
                       [&callbacks](const cradle::Event& event) {
-                        if (callbacks.event) callbacks.event(eventOf(event));
+                        if (callbacks.event) asThrownByCaller(callbacks.event, eventOf(event));
                       },
                       [&callbacks](const std::string& warning) {
-                        if (callbacks.warning) callbacks.warning(warning);
+                        if (callbacks.warning) asThrownByCaller(callbacks.warning, warning);
                       }};
-  sink.reached = callbacks.reached;
+  if (callbacks.reached) sink.reached = [&callbacks](double time) { asThrownByCaller(callbacks.reached, time); };
   return sink;
 }
 

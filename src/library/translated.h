@@ -3,6 +3,7 @@
 #include <cradle/error.h>
 
 #include <cfenv>
+#include <exception>
 #include <filesystem>
 #include <new>
 #include <string>
@@ -29,12 +30,29 @@ class OwnRounding {
   std::fenv_t before_{};
 };
 
+/// What a function of the caller has thrown, on its way through Cradle.
+struct ThrownByCaller {
+  std::exception_ptr thrown;
+};
+
+/// Calls a function of the caller, whose exceptions translated() leaves as they are.
+template <class Function, class... Arguments>
+void asThrownByCaller(const Function& function, const Arguments&... arguments) {
+  try {
+    function(arguments...);
+  } catch (...) {
+    throw ThrownByCaller{std::current_exception()};
+  }
+}
+
 /// Calls `work`; what Cradle throws inside is thrown as what the library promises.
 template <class Work>
 auto translated(const Work& work) {
   const OwnRounding own;
   try {
     return work();
+  } catch (const ThrownByCaller& caller) {
+    std::rethrow_exception(caller.thrown);
   } catch (const cradle::Error& error) {
     const std::string_view what = error.what();  // options of the program are arguments here
     throw Error(static_cast<ErrorKind>(error.kind()), std::string(what.substr(what.starts_with("--") ? 2 : 0)));

@@ -3,13 +3,56 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
+#include <thread>
 
 #include "core/error.h"
+#include "core/worker_threads.h"
 
 namespace cradle {
 namespace {
+
+// The innermost watch of a thread is asked, and none when it is gone.
+TEST(InterruptionWatch, EndsWorkByWhatItThrows) {
+  int looks = 0;
+  {
+    const InterruptionWatch outer([&] { throw 1; });
+    {
+      const InterruptionWatch inner([&] { ++looks; });
+      throwIfInterrupted();
+    }
+    EXPECT_THROW(throwIfInterrupted(), int);
+  }
+  throwIfInterrupted();
+  EXPECT_EQ(looks, 1);
+}
+
+// A helper ends once the watch has thrown in the thread that gave the task, and by the same; it does not ask itself.
+TEST(InterruptionWatch, EndsHelpersToo) {
+  WorkerThreads threads(2);
+  std::atomic<bool> isOver = false;
+  std::atomic<int> looks = 0, thrown = 0;
+  const std::thread::id caller = std::this_thread::get_id();
+  const InterruptionWatch watch([&] {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    ++looks;
+    throw 7;
+  });
+  const auto task = [&](int thread) {
+    try {
+      while (thread == 1 && !isOver) throwIfInterrupted();
+      throwIfInterrupted();
+    } catch (int number) {
+      thrown += number;
+      isOver = true;
+    }
+  };
+  threads.run(task);
+  EXPECT_EQ(thrown, 14);
+  EXPECT_EQ(looks, 1);
+}
 
 // Each in a process of its own: a noted signal stays noted.
 

@@ -10,11 +10,12 @@
 
 namespace cradle {
 
-/// Balls of radius 0.1 m, cubes of 0.2 m and capsules 0.32 m long and 0.12 m wide, 1 kg each, over planes, with a step
-/// of 1/60 s (less of small bodies that are added, by their SoftScale).
+/// Balls of radius 0.1 m, cubes of 0.2 m, regular octahedra with corners 0.13 m from their centres and capsules 0.32 m
+/// long and 0.12 m wide, 1 kg each, over planes, with a step of 1/60 s (less of small bodies that are added, by their
+/// SoftScale).
 class DroppedBodies {
  public:
-  static constexpr double kHalf = 0.1, kCapsuleRadius = 0.06, kTimeStep = 1.0 / 60;
+  static constexpr double kHalf = 0.1, kCorner = 0.13, kCapsuleRadius = 0.06, kTimeStep = 1.0 / 60;
 
   void addPlane(const Vec3& point, const Vec3& normal) { geometry_.planes.push_back({point, normal, 0}); }
   /// A floor and four walls, `width` (m) apart.
@@ -29,6 +30,13 @@ class DroppedBodies {
   void addCube(const Vec3& position, const Quat& turn = Quat::Identity()) {
     const double inertia = 4 * kHalf * kHalf / 6;
     add(colliderOf(Box{Vec3::Constant(2 * kHalf)}, {}), inertia * Mat3::Identity(), position, turn, Vec3::Zero());
+  }
+  void addOctahedron(const Vec3& position, const Quat& turn) {
+    std::vector<Vec3> corners;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sign : {1.0, -1.0}) corners.push_back(sign * kCorner * Vec3::Unit(axis));
+    const double inertia = kCorner * kCorner / 5;
+    add(colliderOf(convexHullOf(corners), {}), inertia * Mat3::Identity(), position, turn, Vec3::Zero());
   }
   void addCapsule(const Vec3& position, const Quat& turn) {
     const Capsule capsule{kCapsuleRadius, 2 * kHalf};
@@ -76,8 +84,9 @@ class DroppedBodies {
     return sum;
   }
 
-  /// The deepest overlap (m) of balls, cubes, capsules and planes, from the poses alone: cubes by all 15 axes,
-  /// capsules by points of one axis 5 mm apart, which miss 0.03 mm at most. Capsules do not meet other bodies.
+  /// The deepest overlap (m) of balls, cubes, octahedra, capsules and planes, from the poses alone: cubes by all 15
+  /// axes, octahedra by all 44, capsules by points of one axis 5 mm apart, which miss 0.03 mm at most. Capsules do not
+  /// meet other bodies.
   double deepestOverlap() {
     double most = 0;
     for (int i = 0; i < count(); ++i) {
@@ -93,10 +102,15 @@ class DroppedBodies {
   bool isCapsule(int body) const {
     return geometry_.colliders[static_cast<std::size_t>(body)].kind() == ColliderKind::capsule;
   }
+  bool isOctahedron(int body) const {
+    const Collider& collider = geometry_.colliders[static_cast<std::size_t>(body)];
+    return collider.polytope && collider.polytope->vertices.size() == 6;
+  }
   Mat3 turnOf(int body) { return orientation(state_, body).toRotationMatrix(); }
   double reachAlong(int body, const Vec3& direction) {
     if (isCapsule(body))
       return kCapsuleRadius * direction.norm() + kHalf * std::abs(turnOf(body).col(1).dot(direction));
+    if (isOctahedron(body)) return kCorner * (turnOf(body).transpose() * direction).cwiseAbs().maxCoeff();
     return kHalf * (isSphere(body) ? direction.norm() : (turnOf(body).transpose() * direction).cwiseAbs().sum());
   }
   double overlapOfCapsules(const Vec3& offset, const Vec3& axisA, const Vec3& axisB) const {
@@ -107,6 +121,16 @@ class DroppedBodies {
     }
     return 2 * kCapsuleRadius - least;
   }
+  /// Normals of an octahedron's faces, and directions of its edges.
+  static std::vector<Vec3> octahedronAxes(const Mat3& turn, bool ofEdges) {
+    std::vector<Vec3> axes;
+    for (const double sign : {1.0, -1.0})
+      for (int k = 0; k < 3; ++k)
+        if (ofEdges) axes.emplace_back(turn.col(k) + sign * turn.col((k + 1) % 3));
+    for (int k = 0; k < 4; ++k)
+      if (!ofEdges) axes.emplace_back(turn * Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, 1));
+    return axes;
+  }
   double overlapOf(int i, int j) {
     const Vec3 offset = position(i) - position(j);
     if (isCapsule(i)) return overlapOfCapsules(offset, turnOf(i).col(1), turnOf(j).col(1));
@@ -116,6 +140,12 @@ class DroppedBodies {
       if (!isSphere(i)) axes.push_back(a.col(k));
       if (!isSphere(j)) axes.push_back(b.col(k));
       for (int l = 0; l < 3 && !isSphere(i) && !isSphere(j); ++l) axes.push_back(a.col(k).cross(b.col(l)));
+    }
+    if (isOctahedron(i)) {
+      axes = octahedronAxes(a, false);
+      for (const Vec3& normal : octahedronAxes(b, false)) axes.push_back(normal);
+      for (const Vec3& edge : octahedronAxes(a, true))
+        for (const Vec3& other : octahedronAxes(b, true)) axes.push_back(edge.cross(other));
     }
     double least = 1;
     for (const Vec3& axis : axes)

@@ -18,7 +18,8 @@ const Quat kTurn = rotationAbout(Vec3(1, -2, 0.5), 0.4);
 PredictedManifold manifoldOfPair(const PosedBodies& bodies) {
   const SoftManifolds manifolds(bodies.geometry);
   std::vector<Contact> scratch;
-  return manifolds.manifoldOf(manifolds.pairOf(0), bodies.stepStart(), scratch);
+  SoftPair pair = manifolds.pairOf(0);
+  return manifolds.manifoldOf(pair, bodies.stepStart(), scratch);
 }
 
 double deepestOf(const PredictedManifold& manifold) {
@@ -64,8 +65,10 @@ struct OverPlane : PosedBodies {
 
 TEST(SoftManifolds, OfAPlaneAreAsFarAsTheLowestPoint) {
   const RigidTransform beside{Quat::Identity(), Vec3(0.02, -0.01, 0.03)};
-  for (const Collider& collider : {colliderOf(Sphere{0.1}, beside), colliderOf(Capsule{0.06, 0.2}, beside),
-                                   colliderOf(Box{Vec3(0.2, 0.3, 0.1)}, beside)})
+  for (const Collider& collider :
+       {colliderOf(Sphere{0.1}, beside), colliderOf(Capsule{0.06, 0.2}, beside),
+        colliderOf(Box{Vec3(0.2, 0.3, 0.1)}, beside),
+        colliderOf(convexHullOf({{0, 0, 0}, {0.2, 0, 0}, {0, 0.1, 0}, {0, 0, 0.3}}), beside)})
     for (const double gap : {-2e-3, 0.0, 3e-3}) {
       const OverPlane bodies(collider, gap);
       const PredictedManifold manifold = manifoldOfPair(bodies);

@@ -13,12 +13,12 @@ namespace {
 const ContactMaterial kLaw{0, 0.5, 0.5};
 constexpr double kDeepest = 3.5e-3;  // m: what the eye may see of 0.2 m
 
-enum class Kind { balls, cubes, turnedCubes, capsules };
+enum class Kind { balls, cubes, turnedCubes, octahedra, capsules };
 
 /// 40 bodies in a tray 0.9 m wide, on a grid that is a little irregular.
 void drop(Kind kind, DroppedBodies& bodies) {
   bodies.addTray(0.9);
-  const bool isWide = kind == Kind::turnedCubes || kind == Kind::capsules;
+  const bool isWide = kind != Kind::balls && kind != Kind::cubes;
   const double pitch = isWide ? 0.36 : 0.22;
   const int side = isWide ? 2 : 3;
   for (int i = 0; i < 40; ++i) {
@@ -28,6 +28,8 @@ void drop(Kind kind, DroppedBodies& bodies) {
     const Quat turn(0.3 + 0.1 * (i % 3), 0.2 * (i % 5) - 0.4, 0.3 * (i % 4) - 0.5, 0.1 * (i % 7));
     if (kind == Kind::balls)
       bodies.addSphere(position);
+    else if (kind == Kind::octahedra)
+      bodies.addOctahedron(position, turn.normalized());
     else if (kind == Kind::capsules)
       bodies.addCapsule(position, turn.normalized());
     else
@@ -108,7 +110,9 @@ TEST_P(Piles, DoNotDependOnWhatStandsInTheOtherLane) {
   EXPECT_EQ(states[1], states[0]);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Piles, ::testing::Values(Kind::balls, Kind::cubes, Kind::turnedCubes, Kind::capsules));
+INSTANTIATE_TEST_SUITE_P(All, Piles,
+                         ::testing::Values(Kind::balls, Kind::cubes, Kind::turnedCubes, Kind::octahedra,
+                                           Kind::capsules));
 
 // Towers of cubes beside each other, each cube a little off the one below, fall by at most 0.49 m, for 0.32 s, and
 // sleep after 0.5 s of being slow: 49 steps, if nothing moved after the fall. With eight sub-steps the cubes went on

@@ -40,6 +40,36 @@ int main(int, char** argv) {
   }
 }
 """
+# What functions of the caller throw comes back as it was thrown, from each of them.
+THROWS = """
+#include <cradle/simulate.h>
+#include <cradle/watch.h>
+#include <cstdio>
+#include <new>
+#include <system_error>
+namespace cr = cradle::v1;
+template <class Thrown>
+void told(const char* name, const cr::Scene& scene, const cr::Callbacks& callbacks) {
+  try {
+    cr::simulate(scene, callbacks);
+    std::printf("%s ended\\n", name);
+  } catch (const Thrown&) {
+    std::printf("%s\\n", name);
+  }
+}
+int main(int, char** argv) {
+  const cr::Scene scene = cr::Scene::load(argv[1]);
+  told<std::bad_alloc>("frame", scene, {.frame = [](const cr::Frame&) { throw std::bad_alloc(); }});
+  told<std::system_error>("event", scene, {.event = [](const cr::Event&) { throw std::system_error(std::error_code()); }});
+  told<int>("frame again", scene, {.frame = [](const cr::Frame& frame) { if (frame.number == 2) throw 3; }});
+  bool hasFrame = false;
+  {
+    const cr::Watch watch([] { throw std::logic_error("enough"); });
+    told<std::logic_error>("watch", scene, {.frame = [&](const cr::Frame&) { hasFrame = true; }});
+  }
+  told<int>(hasFrame ? "too late" : "without a watch", scene, {});
+}
+"""
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)
 project(others LANGUAGES CXX)
@@ -49,6 +79,8 @@ target_link_libraries(window PRIVATE Cradle::render)
 add_executable(last last.cpp)
 target_link_libraries(last PRIVATE Cradle::render)
 target_link_options(last PRIVATE -ffast-math)
+add_executable(throws throws.cpp)
+target_link_libraries(throws PRIVATE Cradle::simulate)
 """
 
 
@@ -74,7 +106,7 @@ class Library(unittest.TestCase):
         project = os.path.join(cls.folder, "others_project")
         os.mkdir(project)
         pictures = os.path.join(SOURCE, "examples", "library", "pictures.cpp")
-        for name, text in (("CMakeLists.txt", PROJECT % pictures), ("window.cpp", WINDOW), ("last.cpp", LAST)):
+        for name, text in (("CMakeLists.txt", PROJECT % pictures), ("window.cpp", WINDOW), ("last.cpp", LAST), ("throws.cpp", THROWS)):
             with open(os.path.join(project, name), "w") as file:
                 file.write(text)
         cls.others = cls.build(project, "others")
@@ -146,6 +178,10 @@ class Library(unittest.TestCase):
         program = "import cradle; print(len(cradle.simulate(%r)))" % SCENE
         said = run("/usr/bin/python3", "-B", "-c", program, env={**os.environ, "PYTHONPATH": package[0]})
         self.assertEqual(said.strip(), "601")
+
+    def test_what_the_caller_throws_is_left_as_it_is(self):
+        self.assertEqual(run(os.path.join(self.others, "throws"), SCENE).splitlines(),
+                         ["frame", "event", "frame again", "watch", "without a watch ended"])
 
     def test_a_fault_is_an_exception_with_the_words_of_the_program(self):
         scene = os.path.join(self.folder, "fault.json")

@@ -240,6 +240,22 @@ def test_ctrl_c_ends_a_simulation():
     assert process.wait(20) == 42
 
 
+def test_ctrl_c_ends_what_comes_before_the_first_frame():
+    body = {**BALL, "copies": {"count": [46, 46, 46], "spacing": [1, 1, 1]}}  # takes seconds to plan
+    program = ("import cradle, os, signal, sys, threading, time\n"
+               "told = []\n"
+               "def end():\n"
+               "    while time.process_time() < 2: time.sleep(0.02)\n"
+               "    os.kill(os.getpid(), signal.SIGINT)\n"
+               "thread = threading.Thread(target=end)\n"
+               "thread.start()\n"
+               "try: cradle.simulate(%r, progress=lambda *time: told.append(time))\n"
+               "except KeyboardInterrupt: sys.exit(43 if told else 42)" % scene(1, bodies=(body,)))
+    begin = time.monotonic()
+    assert subprocess.run([sys.executable, "-c", program], timeout=60).returncode == 42
+    assert time.monotonic() - begin < 20
+
+
 # Islands share a frame that takes long: what ends one of them ends all.
 def test_progress_ends_all_islands_of_a_frame():
     told = []
