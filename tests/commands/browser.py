@@ -4,7 +4,7 @@ import base64, json, os, signal, socket, subprocess, time, urllib.request
 PATIENCE = 60  # s
 # Chromium's own software renderer; without a sandbox, which root has none of.
 OPTIONS = ["--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-           "--disable-dev-shm-usage", "--window-size=1000,800"]
+           "--disable-dev-shm-usage", "--window-size=600,480"]
 
 
 class Browser:
