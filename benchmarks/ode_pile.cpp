@@ -63,6 +63,7 @@ void OdePile::add(const PileItem& item) {
   const dReal quaternion[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
   dBodySetPosition(body, item.position.x(), item.position.y(), item.position.z());
   dBodySetQuaternion(body, quaternion);
+  dBodySetLinearVel(body, item.velocity.x(), item.velocity.y(), item.velocity.z());
   const dGeomID geom = geomOf(item);
   dGeomSetBody(geom, body);
   if (!item.isBox() && !item.halfSize.isZero()) dGeomSetOffsetQuaternion(geom, kFromYToZ);

@@ -164,21 +164,57 @@ double depthOf(const PileItem& first, const PileItem& second, const Vec3& offset
   return depthOfBoxes(first, second, offset, a, b);
 }
 
+PileItem boxAt(const Vec3& halfSize, double mass, const Vec3& position) {
+  PileItem item;
+  item.halfSize = halfSize, item.mass = mass, item.position = position;
+  return item;
+}
+
+/// Bricks of 0.4 x 0.2 x 0.2 m in rows of ten, every other row half a brick aside, and the ball before their middle.
+void addWall(int bricks, PileScene& scene) {
+  constexpr double kBallRadius = 0.4, kBallMass = 263, kBallSpeed = 8;  // m, kg, m/s
+  const Vec3 half(0.2, 0.1, 0.1);
+  for (int i = 0; i < bricks; ++i) {
+    const int row = i / 10;
+    const Vec3 position(0.4 * (i % 10) - 1.8 + 0.2 * (row % 2), 0.1 + 0.2 * row, 0);
+    scene.items.push_back(boxAt(half, kDensity * 8 * half.prod(), position));
+  }
+  PileItem ball;
+  ball.radius = kBallRadius, ball.mass = kBallMass;
+  ball.position = Vec3(0, 0.2 * (bricks / 10) / 2, 2), ball.velocity = Vec3(0, 0, -kBallSpeed);
+  scene.items.push_back(ball);
+}
+
+void addPyramid(int lowest, PileScene& scene) {
+  for (int row = 0; row < lowest; ++row)
+    for (int i = 0; i < lowest - row; ++i) {
+      const Vec3 position(0.2 * i + 0.1 * row - 0.1 * (lowest - 1), kHalf + 0.2 * row, 0);
+      scene.items.push_back(boxAt(Vec3::Constant(kHalf), 1, position));
+    }
+}
+
 }  // namespace
 
 const std::vector<std::string>& pileKinds() {
-  static const std::vector<std::string> kinds{"spheres", "boxes", "turned", "bars", "mixed", "capsules", "hulls"};
+  static const std::vector<std::string> kinds{"spheres",  "boxes", "turned", "bars",   "mixed",
+                                              "capsules", "hulls", "wall",   "pyramid"};
   return kinds;
 }
 
 PileScene makePileScene(int bodies, const std::string& kind, unsigned start) {
   if (std::count(pileKinds().begin(), pileKinds().end(), kind) == 0) throw std::invalid_argument("no heap of " + kind);
   PileScene scene;
+  if (kind == "wall" || kind == "pyramid") {
+    kind == "wall" ? addWall(bodies, scene) : addPyramid(bodies, scene);
+    scene.planes = {{Vec3::Zero(), Vec3::UnitY(), 0}};
+    return scene;
+  }
   std::mt19937 random(start), sizes(start + 1);
   const auto jitter = [&](double size) { return size * (static_cast<double>(random()) / 2147483648.0 - 1); };
   const bool isTurned = kind != "spheres" && kind != "boxes";
   const double pitch = !isTurned ? 0.22 : kind == "bars" ? 0.64 : kind == "mixed" || kind == "capsules" ? 0.55 : 0.36;
-  const double ofCubes = bodies <= 1000 ? 2.4 : 4.6, ofLongOnes = (bodies <= 1000 ? 7 : 12) * pitch + 0.1;
+  const double ofCubes = bodies <= 1000 ? 2.4 : 4.6 * std::sqrt(std::max(1.0, bodies / 5000.0)),
+               ofLongOnes = (bodies <= 1000 ? 7 : 12) * pitch + 0.1;
   scene.width = pitch > 0.5 ? ofLongOnes : ofCubes;
   const double lowest = std::max(0.2, pitch / 2 + 0.02);
   const int side = static_cast<int>((scene.width - 0.1) / pitch);

@@ -27,22 +27,26 @@ struct PileItem {
   double mass = 1;               // kg
   Vec3 position = Vec3::Zero();  // m, of the centre
   Quat turn = Quat::Identity();  // worldFromBody
+  Vec3 velocity = Vec3::Zero();  // m/s, at the start
   bool isBox() const { return radius == 0 && !hull; }
   double reach() const { return radius + halfSize.norm(); }  // m, from the centre
 };
 
-/// Bodies on a jittered grid over a tray of five planes.
+/// Bodies on a jittered grid over a tray of five planes, or that stand on a floor.
 struct PileScene {
   double width = 2.4;  // m
   std::vector<PileItem> items;
   std::vector<PlaneCollider> planes;
 };
 
-/// The kinds of heaps that there are: "spheres", "boxes", "turned" (boxes), all of 0.2 m and 1 kg; and of 1000 kg/m^3
-/// and turned "bars", "mixed" (balls and boxes of many sizes), "capsules" and "hulls" of 12 to 14 corners.
+/// The kinds of heaps that there are: "spheres", "boxes", "turned" (boxes), all of 0.2 m and 1 kg; of 1000 kg/m^3 and
+/// turned "bars", "mixed" (balls and boxes of many sizes), "capsules" and "hulls" of 12 to 14 corners; "wall", bricks
+/// of 1000 kg/m^3 in rows of ten that a ball of 263 kg strikes at 8 m/s; and "pyramid", boxes of 0.2 m and 1 kg in
+/// rows.
 const std::vector<std::string>& pileKinds();
 
-/// `start` makes their places and turns others. Throws std::invalid_argument for another kind.
+/// `bodies`: of a pyramid those of its lowest row. `start` makes their places and turns others. Throws
+/// std::invalid_argument for another kind.
 PileScene makePileScene(int bodies, const std::string& kind, unsigned start = 1);
 
 struct PilePoses {

@@ -60,6 +60,7 @@ OurPile::OurPile(const PileScene& scene, int threads) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     centerOfMass(state_, static_cast<Eigen::Index>(i)) = scene.items[i].position;
     setOrientation(state_, static_cast<Eigen::Index>(i), scene.items[i].turn);
+    linearVelocity(state_, static_cast<Eigen::Index>(i)) = scene.items[i].velocity;
   }
   step_ = std::make_unique<SoftStep>(bodies_, geometry_, Vec3(0, -9.81, 0), threads);
 }
@@ -78,6 +79,7 @@ BulletPile::BulletPile(const PileScene& scene) {
   for (const PileItem& item : scene.items) {
     shapes_.push_back(bulletShapeOf(item));
     add(item.mass, shapes_.back().get(), item.position, item.turn);
+    bodies_.back()->setLinearVelocity(btVector3(item.velocity.x(), item.velocity.y(), item.velocity.z()));
   }
   const bool hasBoxes =
       std::any_of(scene.items.begin(), scene.items.end(), [](const PileItem& item) { return item.radius == 0; });

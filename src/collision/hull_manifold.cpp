@@ -107,13 +107,16 @@ class HullPair {
       keepAxis(nearest.normal);
     }
     ahead_ = time * motion_;
+    const Vec3 onB = nearest.onB - ahead_;
     const AlignedFace face = alignedFace(nearest.normal);
-    if (face.cosine >= kAligned) return faceContact(face.normal);
-    return single(nearest.normal, nearest.onA, nearest.onB - ahead_);
+    if (face.cosine >= kAligned) {
+      const PredictedManifold found = faceContact(face.normal);
+      if (isAsDeep(found, face.normal.dot(onB - nearest.onA))) return found;
+    }
+    return single(nearest.normal, nearest.onA, onB);
   }
 
-  /// By the axis of least overlap. What is that deep must be among the points: where a face that covers an edge has
-  /// nothing as deep over it, the axis carries in one point.
+  /// By the axis of least overlap.
   PredictedManifold contactAlong(const SeparatingAxes& axes) {
     const SeparatingAxis& side = axes.faceOfB.separation > axes.faceOfA.separation ? axes.faceOfB : axes.faceOfA;
     const bool isByEdges = axes.edges.separation > side.separation + scale_ * kSidePreference;
@@ -125,6 +128,8 @@ class HullPair {
     return isAsDeep(found, best.separation) ? found : singleAlong(best);
   }
 
+  /// Whether what touches first or is deepest, by its separation (m), is among a manifold's points: a face that covers
+  /// an edge may have nothing over it, and then one point carries.
   bool isAsDeep(const PredictedManifold& manifold, double separation) const {
     return std::any_of(
         manifold.points.begin(), manifold.points.begin() + static_cast<std::ptrdiff_t>(manifold.count),

@@ -121,10 +121,6 @@ class AxisSearch {
   std::size_t lastStart_ = 0;                                      // vertex of B where the last arc began
 };
 
-}  // namespace
-
-namespace {
-
 SeparatingAxes axesFrom(const Core& a, const Core& b, const Vec3& near, double known) {
   if (!a.collider().polytope->faces.empty()) return AxisSearch(a, b, near, known).find();
   SeparatingAxes axes = AxisSearch(b, a, -near, known).find();

@@ -133,6 +133,7 @@ class DroppedBodies {
   }
   double overlapOf(int i, int j) {
     const Vec3 offset = position(i) - position(j);
+    if (offset.norm() > 2 * std::sqrt(3.0) * kHalf) return 0;  // more than any two of them reach
     if (isCapsule(i)) return overlapOfCapsules(offset, turnOf(i).col(1), turnOf(j).col(1));
     std::vector<Vec3> axes{offset};
     const Mat3 a = turnOf(i), b = turnOf(j);
