@@ -20,6 +20,7 @@ namespace {
 // Lengths in m, times the scale of small bodies, as of boxes (box_manifold.cpp).
 constexpr double kApart = 1e-3;           // hulls nearer than that touch, and their axis is that of least overlap
 constexpr double kSidePreference = 5e-4;  // edges carry contact only where they are clearly farther apart than faces
+constexpr double kBeside = 2e-3;          // a face that sees so much more overlap is beside what touches
 constexpr double kMinClosing = 1e-9;      // m in a step: less is no approach
 constexpr double kMet = 1e-4;             // hulls that have come as near to each other have met
 constexpr double kAligned = 0.95;         // cosine: a normal within 18 degrees of a face's is that of the face
@@ -100,16 +101,20 @@ class HullPair {
       const double closing = -nearest.normal.dot(motion_), left = (1 - time) * std::max(closing, 0.0);
       if (nearest.lowerBound - left > margin_ && !isNear) return none(clearance);
       if (nearest.distance <= scale_ * kMet || !(left > scale_ * kMinClosing)) break;
-      time += std::min(nearest.lowerBound / closing, 1 - time);
-      const GjkResult next = distanceOf(a_, b_.moved(time * motion_));
-      if (!(next.distance > 0)) break;  // they touch: the direction before tells the normal
-      nearest = next;
+      const double next = std::min(nearest.lowerBound / closing, 1 - time);
+      time += next;
+      const GjkResult found = distanceOf(a_, b_.moved(time * motion_));
+      if (!(found.distance > 0)) {  // they touch: the direction before tells the normal
+        nearest.onB += next * motion_, nearest.distance = 0;
+        break;
+      }
+      nearest = found;
       keepAxis(nearest.normal);
     }
     ahead_ = time * motion_;
     const Vec3 onB = nearest.onB - ahead_;
     const AlignedFace face = alignedFace(nearest.normal);
-    if (face.cosine >= kAligned) {
+    if (face.cosine >= kAligned && seesAsMuch(face.normal, nearest.distance)) {
       const PredictedManifold found = faceContact(face.normal);
       if (isAsDeep(found, face.normal.dot(onB - nearest.onA))) return found;
     }
@@ -123,9 +128,17 @@ class HullPair {
     const SeparatingAxis& best = isByEdges ? axes.edges : side;
     keepAxis(best.normal);
     const AlignedFace face = alignedFace(best.normal);
-    if (face.cosine < kAligned) return singleAlong(best);
-    const PredictedManifold found = faceContact(isByEdges ? face.normal : best.normal);
-    return isAsDeep(found, best.separation) ? found : singleAlong(best);
+    const Vec3 normal = isByEdges ? face.normal : best.normal;
+    if (face.cosine >= kAligned && seesAsMuch(normal, best.separation)) {
+      const PredictedManifold found = faceContact(normal);
+      if (isAsDeep(found, best.separation)) return found;
+    }
+    return singleAlong(best);
+  }
+
+  /// Whether a face sees as much of hulls that meet as the normal (a gap, m) of which it takes the place.
+  bool seesAsMuch(const Vec3& normal, double separation) const {
+    return gapAlong(a_, b_.moved(ahead_), normal) > separation - scale_ * kBeside;
   }
 
   /// Whether what touches first or is deepest, by its separation (m), is among a manifold's points: a face that covers
@@ -181,7 +194,6 @@ class HullPair {
       const Vec3 aside = (corners[(i + 1) % corners.size()] - corners[i]).cross(outward);
       clip(points, scratch, aside, aside.dot(corners[i]));
     }
-    if (points.empty()) points.push_back(incident.supportPoint(-outward));
     return clipped(normal, outward, isOfA, outward.dot(corners[0]), points);
   }
 
